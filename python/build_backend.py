@@ -1,7 +1,7 @@
-"""Builds the wheel of photorque: CMake compiles, this packs. PEP 517, the standard library alone.
+"""Build backend (PEP 517) for the wheel of photorque: CMake compiles, this module packs. Standard library only.
 
-Environment: PHOTORQUE_BUILD names another build folder than build/; there what is compiled already is
-not compiled again.
+Environment: PHOTORQUE_BUILD sets another build folder than build/; files that are already compiled there
+are not compiled again.
 """
 
 import base64
@@ -45,18 +45,18 @@ def _tag():
 
 
 def _has_pybind11_of_debian():
-    """CMake finds that one without help."""
+    """Whether CMake finds Debian's pybind11 without help."""
     return any(pathlib.Path(f"/usr/{place}/cmake/pybind11").exists() for place in ("lib", "share"))
 
 
 def _compile():
-    """The folder of the package with the compiled module."""
+    """Compiles the module; returns the folder of the package with it."""
     build = pathlib.Path(os.environ.get("PHOTORQUE_BUILD", root / "build"))
     configure = ["cmake", "--preset", "release", "-B", str(build), "-DPHOTORQUE_PYTHON=ON"]
-    # Not that of an environment, which may be gone when the build folder is used again.
+    # The base interpreter: that of a virtual environment may be gone when the build folder is used again.
     configure.append(f"-DPython_EXECUTABLE={sys._base_executable}")
     if not _has_pybind11_of_debian():
-        import pybind11  # in pip's own environment, which is gone after the build
+        import pybind11  # in pip's environment, which is removed after the build
 
         configure.append(f"-Dpybind11_DIR={pybind11.get_cmake_dir()}")
     subprocess.run(configure, cwd=root, check=True)
@@ -65,7 +65,7 @@ def _compile():
 
 
 def get_requires_for_build_wheel(config_settings=None):
-    """An empty list on a machine with Debian's pybind11, so that no package index is used."""
+    """Empty on a machine with Debian's pybind11, so that no package index is used."""
     return [] if _has_pybind11_of_debian() else ["pybind11>=2.10"]
 
 
@@ -74,7 +74,7 @@ def _wheel_text(tag):
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
-    """Metadata for an installer before it builds; without it, it would build twice."""
+    """Metadata for an installer before the build; without this function it would build twice."""
     info = pathlib.Path(metadata_directory) / f"photorque-{_version()}.dist-info"
     info.mkdir()
     (info / "METADATA").write_text(_metadata(), encoding="utf-8")
@@ -83,7 +83,7 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
 
 
 def module_files(package):
-    """The module in the built `package` folder and what belongs to it: {name in the wheel: path}."""
+    """The module in the built `package` folder and its files: {name in the wheel: path}."""
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
     return {f"photorque/{file.name}": file for file in sorted(package.iterdir())
             if file.name.endswith(suffix) or file.suffix in (".py", ".pyi", ".typed")}
@@ -123,7 +123,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    """Archive of the files that git tracks, as they are."""
+    """Archive of all files that git tracks."""
     name = f"photorque-{_version()}"
     known = subprocess.run(["git", "ls-files"], cwd=root, check=True, capture_output=True, text=True)
     with tarfile.open(pathlib.Path(sdist_directory) / f"{name}.tar.gz", "w:gz") as archive:

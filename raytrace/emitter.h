@@ -1,4 +1,4 @@
-// The interface between the tracer and everything that shines.
+// The interface between the tracer and all light sources.
 #pragma once
 
 #include <array>
@@ -15,7 +15,8 @@
 
 namespace photorque {
 
-// Rays in blocks, structure of arrays, so that compilers vectorise the loops of an emitter.
+// Number of rays per block. Blocks are structures of arrays, so that compilers vectorise the loops
+// of an emitter.
 inline constexpr int ray_block = sobol_block;
 
 // Points of the unit hypercube as 32-bit fixed-point fractions (see sobol_fraction()).
@@ -23,8 +24,8 @@ struct SampleBlock {
   alignas(64) std::array<std::array<uint32_t, ray_block>, sobol_dimensions> bits;
 };
 
-// Rays in the emitter's frame: origins in metres, directions of unit norm to 3e-7. In single
-// precision, which Embree requires; the distance of the emitter costs no precision.
+// Rays in the emitter's frame: origins in metres, directions of unit norm to 3e-7. Single
+// precision, which Embree requires, is sufficient at any distance (see RayPlacement).
 struct RayBlock {
   alignas(64) std::array<std::array<float, ray_block>, 3> origin_m;
   alignas(64) std::array<std::array<float, ray_block>, 3> direction;
@@ -36,20 +37,20 @@ class Emitter {
  public:
   virtual ~Emitter() = default;
 
-  // Radiant power of all rays together [W], > 0. Every ray carries an equal fraction.
+  // Total radiant power of all rays [W], > 0. Every ray carries an equal fraction.
   virtual double power_W() const = 0;
 
-  // Turns uniform points into rays. Points that are well distributed must give rays that are: each
-  // dimension enters through a monotone or otherwise area-preserving map. Dimensions 0 and 1 choose
-  // the point of the aperture, 2 and 3 the direction.
+  // Maps uniform points to rays. To preserve a good distribution of the points, each dimension
+  // enters through a monotone or otherwise area-preserving map. Dimensions 0 and 1 select the point
+  // of the aperture, 2 and 3 the direction.
   virtual void emit(const SampleBlock& samples, RayBlock& rays) const = 0;
 
-  // Radiant intensity at `angle_rad` ∈ [0, π] from the axis over its maximum, for beams that are
-  // the same all round the axis; the average around the axis for others. In [0, 1].
+  // Radiant intensity at `angle_rad` ∈ [0, π] from the axis, divided by its maximum; in [0, 1]. For
+  // beams without axial symmetry: the average around the axis.
   virtual double relative_intensity(double angle_rad) const = 0;
 };
 
-// An emitter that gives another power.
+// An emitter with the rays of another and its power multiplied by a factor.
 class ScaledEmitter final : public Emitter {
  public:
   ScaledEmitter(std::shared_ptr<const Emitter> one, double factor)
@@ -67,15 +68,15 @@ class ScaledEmitter final : public Emitter {
   double factor_;
 };
 
-// An aperture that shines alike from all its points, with the emitter's relative_intensity() about
-// the axis: a disc at z = 0, or an area so far away that only directions matter. What lets the
-// light on a surface be gathered from the surface's side (see direct/disc_light.h).
+// An aperture whose points all radiate alike, with the emitter's relative_intensity() about the
+// axis. It is a disc at z = 0, or an area so far away that only directions matter. Light from it
+// can be integrated over a surface without rays (see direct/disc_light.h).
 struct UniformAperture {
-  double radius_m = 0.0;  // > 0; infinite for parallel light, whose rays fill a plane normal to
-                          // each direction
-  double exitance_W_m2 = 0.0;  // power over the area of the aperture
-  // Where the relative intensity jumps or changes its law, rising; the last is where it ends, 0 for
-  // collimated light.
+  // > 0; infinite for parallel light, whose rays fill a plane normal to each direction
+  double radius_m = 0.0;
+  double exitance_W_m2 = 0.0;  // power divided by the area of the aperture
+  // Angles where the relative intensity jumps or changes its formula, rising. The last is the end
+  // of the beam; 0 for collimated light.
   std::vector<double> edges_rad;
 
   bool operator==(const UniformAperture&) const = default;
@@ -87,7 +88,7 @@ struct Beam {
   std::shared_ptr<const Emitter> emitter;
   RigidTransform lab_from_emitter;
   Spectrum spectrum;
-  std::optional<UniformAperture> aperture = std::nullopt;  // none: rays only
+  std::optional<UniformAperture> aperture = std::nullopt;  // empty: rays only
 };
 
 }  // namespace photorque

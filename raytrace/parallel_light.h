@@ -1,25 +1,28 @@
-// Light from so far away that only its directions matter: the Sun.
+// Light from so far away that only its directions matter, such as sunlight.
 #pragma once
 
 #include "raytrace/emitter.h"
 
 namespace photorque {
 
-// An emitter whose rays fill, for each direction, a disc normal to THAT direction and centred on
-// (0, 0, radius), so that the sphere of this radius there is lit evenly. The tracer may then choose
-// the points of the disc itself, and leave out those from which no ray meets anything.
+// An emitter whose rays fill, for each direction, a disc normal to that direction and centred on
+// (0, 0, radius). The sphere of this radius about that point is lit evenly. The tracer may choose
+// the points of the disc itself and omit those from which no ray meets anything.
 class ParallelLight : public Emitter {
  public:
   explicit ParallelLight(double radius_m) : radius_m_(radius_m) {}
+  // Radius [m] of the lit sphere.
 
   double radius_m() const { return radius_m_; }
 
-  // Fills rays.direction from dimensions 2 and 3. The angle from the axis rises with dimension 2.
+  // Fills rays.direction from dimensions 2 and 3. The angle from the axis increases with dimension
+  // 2.
   virtual void fill_directions(const SampleBlock& samples, RayBlock& rays) const = 0;
 
-  // Turns each point (x, y) of the disc in rays.origin_m by the shortest rotation from z to its
-  // direction, moves it to the centre of the sphere, and back along the ray to the plane z = 0.
-  // Source of the axes: J. R. Frisvad, J. Graphics Tools 16 (2012) 151.
+  // Places each point (x, y) of rays.origin_m on the disc of its ray. The point is turned by the
+  // shortest rotation from z to the ray's direction, moved to the centre of the sphere, and moved
+  // back along the ray to the plane z = 0. Source of the axes: J. R. Frisvad, J. Graphics Tools 16
+  // (2012) 151.
   void place_on_discs(RayBlock& rays) const {
     for (int i = 0; i < ray_block; ++i) {
       const double dx = rays.direction[0][i], dy = rays.direction[1][i], dz = rays.direction[2][i];

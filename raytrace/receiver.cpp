@@ -57,7 +57,7 @@ Estimate jackknife(const BinSums& sums,
     }
     left_out.push_back(statistic(without));
   }
-  // The pseudo-values count·θ − (count − 1)·θ₍ᵣ₎ have this standard error (Tukey).
+  // Standard error of the pseudo-values count·θ − (count − 1)·θ₍ᵣ₎ (Tukey).
   const Estimate spread = estimate_from_replicates(left_out);
   return with_common_error({count * statistic(all) - (count - 1.0) * spread.value,
                             (count - 1.0) * spread.standard_error},

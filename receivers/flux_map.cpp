@@ -13,7 +13,7 @@
 namespace photorque {
 namespace {
 
-// Bins with enough surface for their irradiance to mean something.
+// Bins that contain enough surface for a meaningful irradiance.
 std::vector<size_t> substantial_bins(const SurfaceGrid& grid) {
   std::vector<double> covered;
   for (const double area_m2 : grid.area_m2) {
@@ -27,7 +27,7 @@ std::vector<size_t> substantial_bins(const SurfaceGrid& grid) {
   return bins;
 }
 
-// Variance over the surface / mean².
+// Variance over the surface, divided by the square of the mean.
 double squared_variation(const SurfaceGrid& grid, std::span<const double> power_W) {
   double total_W = 0.0, squares = 0.0;
   for (size_t bin = 0; bin < grid.bins(); ++bin) {
@@ -40,8 +40,8 @@ double squared_variation(const SurfaceGrid& grid, std::span<const double> power_
 
 Estimate square_root(const Estimate& square) {
   const double root = std::sqrt(std::max(0.0, square.value));
-  // If the square is below its error, the root is not linear in it; its error is of the order of
-  // √error.
+  // If the square is below its error, the root is not linear in it. Its error is then of the order
+  // of √error.
   const double slope = std::max(root, std::sqrt(square.standard_error));
   return {root, slope > 0.0 ? square.standard_error / (2.0 * slope) : 0.0};
 }
@@ -90,7 +90,7 @@ FluxStatistics flux_statistics(const FluxMapReceiver& receiver, const FluxMap& m
 
 namespace {
 
-// Neighbours in memory, so that one instruction adds both.
+// The two channels are neighbours in memory, so that one instruction adds both.
 constexpr size_t incident = 0, absorbed = 1, channels = 2;
 
 struct Replicates {
@@ -103,7 +103,7 @@ Estimate estimate(std::span<const double> values, double bound) {
   return with_bound(estimate_from_replicates(values), bound);
 }
 
-// The sum over the bands [first_band, last_band) of one channel.
+// Sum over the bands [first_band, last_band) of one channel.
 double sum_bands(std::span<const double> bin, size_t channel, size_t first_band, size_t last_band) {
   double sum = 0.0;
   for (size_t band = first_band; band < last_band; ++band) sum += bin[band * channels + channel];
@@ -164,7 +164,8 @@ std::string band_label(const Bands& bands, size_t band) {
   return nm(low_m) + "-" + nm(high_m) + "nm";
 }
 
-// A map whose mean is over the surface: bins at its edge hold little of it.
+// The weight makes the map's mean an average over the surface: bins at its edge contain little of
+// it.
 Map density_map(const SurfaceGrid& grid, const FluxLayer& layer, const std::string& name,
                 const std::string& title) {
   Map map = grid_map(grid, layer.per_bin_W_m2, name, title, "W/m²");

@@ -17,13 +17,13 @@ uint8_t side_bits(Side side) {
   return no_side;
 }
 
-// The cell of a coordinate, the nearest one for coordinates outside; also defined for NaN.
+// Cell of a coordinate; outside the grid the nearest cell. NaN gives cell 0.
 uint32_t cell_of(double coordinate, double last) {
   const double inside = coordinate > 0.0 ? coordinate : 0.0;
   return static_cast<uint32_t>(static_cast<int32_t>(inside < last ? inside : last));
 }
 
-// Joins a run to the one before if they touch.
+// Appends a run, or extends the previous one if they touch.
 void add_run(BinnedHits& out, BinnedHits::Run run) {
   if (out.runs > 0 && out.run[static_cast<size_t>(out.runs) - 1].end == run.begin) {
     out.run[static_cast<size_t>(out.runs) - 1].end = run.end;
@@ -77,11 +77,11 @@ void HitBinner::set_plane(const SurfaceGrid& grid) {
   row_.offset = -v_scale * grid.v_low;
 }
 
-// Neighbouring hits mostly share instance and side, which are looked up once for all of them.
+// Neighbouring hits usually share instance and side, which are looked up once for a run of hits.
 void HitBinner::collect(const Hits& hits, BinnedHits& out) const {
   const auto count = static_cast<uint32_t>(hits.count);
   out.runs = 0;
-  // Mostly all of them do, which is found several at a time.
+  // Often all hits do. This loop tests it and is vectorised.
   uint32_t differences = 0;
   for (uint32_t i = 0; i < count; ++i) {
     differences |= (hits.instance[i] ^ hits.instance[0]) |
@@ -101,7 +101,7 @@ void HitBinner::collect(const Hits& hits, BinnedHits& out) const {
   }
 }
 
-// Adds the hits of a run on one instance whose triangles face the right way.
+// Adds the hits of a run on one instance whose triangles face the requested direction.
 void HitBinner::collect_turned(const Hits& hits, BinnedHits::Run all, BinnedHits& out) const {
   const uint8_t* turned = turned_towards_.data() + first_face_[hits.instance[all.begin]];
   for (uint32_t begin = all.begin, end = 0; begin < all.end; begin = end + 1) {
@@ -111,7 +111,7 @@ void HitBinner::collect_turned(const Hits& hits, BinnedHits::Run all, BinnedHits
   }
 }
 
-// Straight through all hits, whether they count or not, so that the compiler can vectorise.
+// Bins all hits without branches, whether they count or not, so that the compiler can vectorise.
 void HitBinner::bin_plane(const Hits& hits, BinnedHits& out) const {
   const CellCoordinate c = column_, r = row_;
   const uint32_t width = width_;

@@ -1,4 +1,4 @@
-// Which bin of a surface grid each hit falls into.
+// Assignment of hits to the bins of a surface grid.
 #pragma once
 
 #include <array>
@@ -17,17 +17,17 @@ struct BinnedHits {
   };
   int runs = 0;
   std::array<Run, Hits::capacity> run;
-  std::array<uint32_t, Hits::capacity> bin;  // per index into Hits; only of hits that count
+  std::array<uint32_t, Hits::capacity> bin;  // by index into Hits; valid only for hits that count
 };
 
-// Calls add(hit, bin) for all binned hits. Neighbours often share a bin, and adding to it would
-// have to wait for the sum before; four interleaved streams do not.
+// Calls add(hit, bin) for all binned hits. Neighbours often share a bin, and each addition to it
+// would wait for the one before. Four interleaved streams avoid this.
 template <typename Add>
 void for_each_binned(const BinnedHits& binned, const Add& add) {
   for (size_t r = 0; r < static_cast<size_t>(binned.runs); ++r) {
     const size_t begin = binned.run[r].begin, end = binned.run[r].end;
     size_t stride = (end - begin) / 4;
-    if (stride % 64 == 0 && stride > 0) stride -= 8;  // or the streams share sets of the cache
+    if (stride % 64 == 0 && stride > 0) stride -= 8;  // else the streams share sets of the cache
     for (size_t i = begin; i < begin + stride; ++i) {
       for (size_t stream = 0; stream < 4; ++stream) {
         const size_t hit = i + stream * stride;
@@ -38,13 +38,15 @@ void for_each_binned(const BinnedHits& binned, const Add& add) {
   }
 }
 
-// Looks hits up in a grid: the instance belongs to it, the side counts, the triangle is turned the
-// right way, and the position gives the bin. Immutable; keeps the necessary parts of the scene.
+// Looks up hits in a grid. A hit counts if its instance belongs to the grid, its side counts and
+// its triangle faces the requested direction. The position then gives the bin. Immutable; keeps the
+// necessary parts of the scene.
 class HitBinner {
  public:
-  // `grid` must have been laid over `scene`.
+  // `grid` must have been made for `scene`.
   HitBinner(const Scene& scene, const SurfaceGrid& grid);
 
+  // Sets `out` to the runs and bins of the hits that count.
   void bin(const Hits& hits, BinnedHits& out) const;
 
  private:
@@ -63,11 +65,12 @@ class HitBinner {
 
   SurfaceGrid::Over over_;
   uint32_t width_;
-  // Per instance of the scene: bit 1, hits on the front count; bit 0, on the back.
+  // Per instance of the scene: bit 1 is set if hits on the front count, bit 0 if hits on the back
+  // count.
   std::vector<uint8_t> side_bits_;
   // Triangle t of instance i has its entry in the tables below at first_face_[i] + t.
   std::vector<uint32_t> first_face_;
-  std::vector<uint8_t> turned_towards_;            // empty: all are
+  std::vector<uint8_t> turned_towards_;            // empty: all triangles count
   std::vector<std::array<Vec2, 3>> corner_cells_;  // texture: cell coordinates of the corners
   CellCoordinate column_, row_;                    // plane
 };

@@ -26,7 +26,7 @@ InsideLightReceiver::InsideLightReceiver(const Scene& scene)
   for (uint32_t part = 0; part < parts; ++part) part_of_instance_[instances_[part]] = part;
 }
 
-// Neighbouring hits mostly share an instance and its side.
+// Neighbouring hits usually share instance and side.
 void InsideLightReceiver::score(const Hits& hits, std::span<double> sums) const {
   const auto count = static_cast<size_t>(hits.count);
   for (size_t begin = 0, end = 0; begin < count; begin = end) {
@@ -70,7 +70,7 @@ Product InsideLightReceiver::product(const BinSums& sums) const {
 std::string describe_inside_light(const Scene& scene,
                                   const std::vector<InsideLightReceiver::Part>& lit,
                                   double emitted_W) {
-  // A few of ten million rays may leak exactly at an edge.
+  // A few of ten million rays may leak exactly at an edge; this fraction is ignored.
   constexpr double rounding = 1e-6;
   constexpr size_t max_named = 3;
   std::ostringstream line;

@@ -1,4 +1,4 @@
-// Light on the inner side of closed bodies, which passed through their cracks.
+// Light on the inner side of closed bodies, which entered through cracks.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace photorque {
 
-// Watches the instances of meshes that enclose something (Mesh::encloses) and let no light through.
-// No light belongs on the inside of such a body unless a lamp stands in it. Bins: per instance, the
-// power that arrives on its outer side and on its inner side [W], bounces included.
+// Monitors the instances of opaque meshes that enclose a volume (Mesh::encloses). Light on the
+// inside of such a body is an error of the model, unless a lamp is inside. Bins: per instance, the
+// power that arrives on its outer side and on its inner side [W], including bounces.
 class InsideLightReceiver final : public Receiver {
  public:
   explicit InsideLightReceiver(const Scene& scene);
@@ -27,16 +27,17 @@ class InsideLightReceiver final : public Receiver {
   };
   // Parts with light inside, the largest power first.
   std::vector<Part> lit_inside(const BinSums& sums) const;
-  // On the inside of all together.
+  // Power on the inside of all bodies together.
   Estimate inside_W(const BinSums& sums) const;
 
  private:
   std::vector<uint32_t> instances_;
-  std::vector<uint32_t> part_of_instance_;  // or the number of parts, for those not watched
+  // The number of parts for instances that are not monitored.
+  std::vector<uint32_t> part_of_instance_;
 };
 
-// One line of text: how much of `emitted_W` reached the inside of which parts, and whether by
-// cracks or because a part is turned inside out. Empty where it is less than a millionth.
+// One line of text: the part of `emitted_W` that reached the inside, the parts concerned, and
+// whether cracks or an inside-out part are the reason. Empty below a millionth.
 std::string describe_inside_light(const Scene& scene,
                                   const std::vector<InsideLightReceiver::Part>& lit,
                                   double emitted_W);

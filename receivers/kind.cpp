@@ -27,7 +27,7 @@ constexpr Vec3Key facing("facing",
                          {.usually = "all faces"});
 }  // namespace grid_key
 
-// Every name that `node` could have been: the components of all paths.
+// All names that `node` accepts: the components of all paths.
 std::set<std::string> node_names(const Scene& scene) {
   std::set<std::string> names;
   for (const Instance& instance : scene.instances) {
@@ -43,7 +43,7 @@ std::string known_nodes(const Scene& scene, const std::string& wanted) {
   return "a node of the scene that holds a mesh: " + listed_names(node_names(scene), wanted);
 }
 
-// Files are called by it, with a few words before and after.
+// File names contain it, with a few words before and after.
 constexpr size_t longest_name = 150;
 
 std::string read_name(const Settings& settings, const std::string& otherwise) {

@@ -18,9 +18,9 @@ class FluxMapReceiver;    // receivers/flux_map.h
 class TorqueMapReceiver;  // receivers/torque_map.h
 class WrenchReceiver;     // receivers/wrench/wrench.h
 
-// A receiver as its kind made it, with typed handles to those of which other parts of the program
-// need more than a Receiver offers: gathering and photovoltaics for flux maps, gathering for torque
-// maps, tables of wrenches for wrenches. Null for other kinds.
+// A receiver, with typed pointers for parts of the program that need more than the interface
+// Receiver: gathering and photovoltaics use flux maps, gathering uses torque maps, tables of
+// wrenches use wrenches. Null for other kinds.
 struct MadeReceiver {
   std::shared_ptr<const Receiver> receiver;
   std::shared_ptr<const FluxMapReceiver> flux_map = nullptr;
@@ -32,50 +32,49 @@ struct MadeReceiver {
 struct ReceiverKind {
   std::string name;
   std::string summary;  // one sentence, no full stop
-  // Reads all of its keys; throws InputError, also when the scene lacks the named node.
+  // Reads all keys of the kind. Throws InputError for invalid keys or if the scene lacks the named
+  // node.
   std::function<MadeReceiver(const Settings&, const Scene&)> make;
-  // The keys that `make` reads, beside `kind`.
+  // Keys that `make` reads, in addition to `kind`.
   std::vector<Key> keys = {};
 };
 
 // Every kind named in receivers/CMakeLists.txt, in that order.
 std::vector<ReceiverKind> all_receiver_kinds();
 
-// The target of a receiver, and the name of its results.
-//   node  name of a node of the scene (or its path, or part of it); with the nodes below it
+// Target of a receiver, and the name of its results. Keys:
+//   node  name of a node of the scene (or its path, or part of it); includes the nodes below it
 //   name  of the results; a file stem. Default: the node's name
 struct ReceiverTarget {
   std::string name;
   std::vector<uint32_t> instances;  // of the scene
 };
 
-// The name of the results of a receiver called `name`: one that every file system takes, of at most
-// 150 letters. Tables that name a receiver may write either.
+// Name of the results of a receiver called `name`: valid on every file system, at most 150 letters.
+// Tables may refer to a receiver by either name.
 std::string receiver_name(std::string name);
 
-// Reads `node` and `name`. InputError with the nearest node names when the scene has no such node
-// or the node holds no mesh.
+// Reads `node` and `name`. Throws InputError if the scene has no such node (with the most similar
+// names) or if the node contains no mesh.
 ReceiverTarget read_target(const Settings& settings, const Scene& scene);
-// Reads a target; without `node` it is the whole scene, called `otherwise_name`.
+// Reads a target. Without `node` it is the whole scene with the name `otherwise_name`.
 ReceiverTarget read_target_or_all(const Settings& settings, const Scene& scene,
                                   const std::string& otherwise_name);
 
-// Reads
+// Makes the grid from the keys
 //   bins    [along u, along v], 1 … 4096 each; default [100, 100]
 //   over    "plane" (default) or "uv": bins over a plane or over the texture coordinates
 //   side    "front", "back" or "both": side of the surface that counts
 //   facing  [x, y, z], optional: only faces turned towards this body direction, seen along it
-// and lays the grid.
 SurfaceGrid read_surface_grid(const Settings& settings, const Scene& scene,
                               const ReceiverTarget& target, Side default_side);
 
-// The keys of read_target(), or of read_target_or_all() with that name; those of
-// read_surface_grid().
+// Keys of read_target(), of read_target_or_all() with that name, and of read_surface_grid().
 std::vector<Key> target_keys();
 std::vector<Key> target_or_all_keys(const std::string& otherwise_name);
 std::vector<Key> surface_grid_keys(Side default_side);
 
-// The point of torques.
+// Reference point of torques.
 inline constexpr Vec3Key torque_point("about_m", {0.0, 0.0, 0.0},
                                       "the point that torques are about, body axes");
 

@@ -97,7 +97,7 @@ Vec2 to_cells(const SurfaceGrid& grid, const Vec2& uv) {
 
 void measure_areas(SurfaceGrid& grid, const Scene& scene, std::span<const SurfaceFace> faces) {
   grid.area_m2.assign(static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), 0.0);
-  std::vector<double> seen_m2 = grid.area_m2;  // along the normal
+  std::vector<double> seen_m2 = grid.area_m2;  // projected along the normal
   for (const SurfaceFace& face : faces) {
     const double area_m2 = face.area_body_m2.norm();
     const double face_seen_m2 = std::abs(face.area_body_m2.dot(grid.normal_body));
@@ -115,8 +115,8 @@ void measure_areas(SurfaceGrid& grid, const Scene& scene, std::span<const Surfac
         (grid.u_high - grid.u_low) * (grid.v_high - grid.v_low) / static_cast<double>(grid.bins());
     for (const double seen : seen_m2) grid.overlapping_m2 += std::max(0.0, seen - bin_m2);
   }
-  // If an edge of the surface is on a line of the grid, rounding puts a sliver into the next bin;
-  // such slivers are removed.
+  // If an edge of the surface is on a line of the grid, rounding puts a sliver into the next bin.
+  // Such slivers are removed.
   const double largest_m2 = *std::max_element(grid.area_m2.begin(), grid.area_m2.end());
   for (double& area_m2 : grid.area_m2) {
     if (area_m2 < 1e-11 * largest_m2) area_m2 = 0.0;
@@ -219,13 +219,13 @@ std::array<Vec2, 3> texture_corners(const Scene& scene, const SurfaceFace& face)
 
 namespace {
 
-// A corner of a clipped piece: where it is on the grid, and where in the triangle.
+// A corner of a clipped piece: its position on the grid and in the triangle.
 struct Corner {
   Vec2 cell = Vec2::Zero();
   Vec2 barycentric = Vec2::Zero();
 };
 
-// A triangle cut by four lines has at most seven corners; the rest is room for rounding.
+// A triangle cut by four lines has at most seven corners; the others allow for rounding.
 struct Piece {
   std::array<Corner, 12> corner;
   size_t count = 0;
@@ -270,7 +270,7 @@ double area_fraction(std::span<const Vec2> piece) {
   return std::max(0.0, twice_area);
 }
 
-// Calls take(index, part) for the parts of a piece between whole numbers along an axis.
+// Calls take(index, part) for the parts of a piece between consecutive integers along an axis.
 template <typename Take>
 void slice(Piece rest, int axis, int size, const Take& take) {
   double low = rest.corner[0].cell[axis], high = low;
@@ -281,8 +281,8 @@ void slice(Piece rest, int axis, int size, const Take& take) {
   const auto index = [size](double x) {
     return static_cast<int>(std::clamp(std::floor(x), 0.0, size - 1.0));
   };
-  // A piece that is edge-on to this axis is not cut: which side of a line its corners round to
-  // means nothing.
+  // A piece that is edge-on to this axis is not cut: the side of a line to which its corners round
+  // is arbitrary.
   const int first = index(low);
   const int last = high - low < 1e-9 ? first : index(high);
   for (int i = first; i < last; ++i) {

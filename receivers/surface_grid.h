@@ -1,5 +1,5 @@
-// A regular grid of bins laid over part of a scene, the area of surface in every bin, and values on
-// it as a picture.
+// A regular grid of bins on part of a scene, the area of surface in every bin, and maps of values
+// on the grid.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@
 
 namespace photorque {
 
-// Which side of a surface counts. `both` adds the two sides up over the area of one: the irradiance
-// of a bifacial sheet.
+// Side of a surface that counts. `both` adds the light on both sides and divides by the area of
+// one, as the irradiance of a bifacial sheet.
 enum class Side { front, back, both };
 
 // A triangle of the scene in the body frame. `area_body_m2` points to the front; its length is the
@@ -30,12 +30,12 @@ struct SurfaceFace {
   Vec3 area_body_m2 = Vec3::Zero();
 };
 
-// The triangles of some instances; with `facing_body`, only those whose front is turned towards
-// that direction (by less than 90 deg).
+// Triangles of some instances; with `facing_body`, only those whose front is turned towards that
+// direction (by less than 90 deg).
 std::vector<SurfaceFace> faces_of(const Scene& scene, std::span<const uint32_t> instances,
                                   const std::optional<Vec3>& facing_body = std::nullopt);
 
-// Where the bins lie and which faces count.
+// Positions of the bins, and the faces that count.
 struct SurfaceGrid {
   // plane:   bins are squares of a plane, seen along `normal_body`; coordinates u, v in metres are
   //          the components of the position along u_axis_body and v_axis_body.
@@ -60,11 +60,12 @@ struct SurfaceGrid {
   // where there is no surface.
   std::vector<double> area_m2;
 
-  // plane only: by how much the surface, seen along the normal, is more than the bins have room
-  // for: layers that lie above each other, whose light and area share bins.
+  // plane only: area of overlapping layers of the surface, seen along the normal. Layers above each
+  // other share bins, which add up their light and area.
   double overlapping_m2 = 0.0;
 
   size_t bins() const { return area_m2.size(); }
+  // Sum of area_m2.
   double total_area_m2() const;
 };
 
@@ -73,7 +74,7 @@ struct SurfaceGridOptions {
   Side side = Side::front;
   int width = 100;   // 1 … 4096
   int height = 100;  // 1 … 4096
-  // Keep only faces turned towards this direction and look along it. Needed for closed bodies,
+  // Keep only faces turned towards this direction and look along it. Required for closed bodies,
   // whose mean normal is zero.
   std::optional<Vec3> facing_body;
   // Name of the surface in error messages.
@@ -83,44 +84,44 @@ struct SurfaceGridOptions {
 
 inline constexpr int max_grid_bins = 4096;  // per direction
 
-// Lays a grid over the instances. In the plane, the normal is `facing_body` or else the
-// area-weighted mean normal; u is the projection of body x (of body y where the normal is within
-// 1e-6 rad of ±x), and the extent is the bounding rectangle of all faces.
-// Throws InputError when there is no surface, when a closed surface lacks `facing_body`, when a
-// mesh lacks texture coordinates or has some outside [0, 1].
+// Makes a grid over the instances. Over a plane, the normal is `facing_body`, by default the
+// area-weighted mean normal. u is the projection of body x (of body y if the normal is within 1e-6
+// rad of ±x). The extent is the bounding rectangle of all faces.
+// Throws InputError if there is no surface, if a closed surface lacks `facing_body`, or if a mesh
+// lacks texture coordinates or has some outside [0, 1].
 SurfaceGrid make_surface_grid(const Scene& scene, std::span<const uint32_t> instances,
                               const SurfaceGridOptions& options);
 
-// The bin of a point of the body frame (over a plane) or of texture coordinates (over a texture);
-// the nearest bin for points outside.
+// Index of the bin of a point of the body frame (over a plane) or of texture coordinates (over a
+// texture); the nearest bin for points outside.
 size_t bin_of_position(const SurfaceGrid& grid, const Vec3& position_body_m);
 size_t bin_of_texture(const SurfaceGrid& grid, const Vec2& uv);
 
-// The corners of a face on the grid, in units of bins from its lower corner.
+// Corners of a face on the grid, in units of bins from its lower corner.
 std::array<Vec2, 3> corners_in_bins(const SurfaceGrid& grid, const Scene& scene,
                                     const SurfaceFace& face);
 
 // Texture coordinates of the corners of a face.
 std::array<Vec2, 3> texture_corners(const Scene& scene, const SurfaceFace& face);
 
-// Cuts a triangle along the lines of a grid of unit cells [0, width] × [0, height] and calls
-// `add(column, row, fraction)` with the fraction of the triangle's area in each cell it meets. The
-// fractions are ≥ 0 and sum to 1 within a few roundings, also for a triangle that the grid sees
-// edge-on. `corners` are in units of cells; parts outside count for the nearest cell.
+// Cuts a triangle along the lines of a grid of unit cells [0, width] × [0, height]. Calls
+// `add(column, row, fraction)` with the fraction of the triangle's area in each cell. The fractions
+// are ≥ 0 and sum to 1 within a few roundings, also for a triangle that is edge-on to the grid.
+// `corners` are in units of cells; parts outside count for the nearest cell.
 //
 // Method: I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Comm. ACM 17 (1974),
-// first into columns and then into rows, on polygons that carry barycentric coordinates, in which
-// areas are measured.
+// first into columns and then into rows. The polygons carry barycentric coordinates, from which
+// areas are computed.
 void split_over_cells(const std::array<Vec2, 3>& corners, int width, int height,
                       const std::function<void(int, int, double)>& add);
 
-// The pieces: add(column, row, corners of a convex polygon), each corner by its weights of the
-// triangle's corners 1 and 2.
+// As split_over_cells(), but calls add(column, row, corners of a convex polygon) with the pieces.
+// Each corner is given by its weights of the triangle's corners 1 and 2.
 void clip_to_cells(const std::array<Vec2, 3>& corners, int width, int height,
                    const std::function<void(int, int, std::span<const Vec2>)>& add);
 
-// A Map of one estimate per bin, with the grid's edges and labels. Over a plane, an axis that lies
-// along a body axis is called by it.
+// A Map with one estimate per bin, and the grid's edges and labels. Over a plane, an axis along a
+// body axis has its name.
 Map grid_map(const SurfaceGrid& grid, const std::vector<Estimate>& bins, const std::string& name,
              const std::string& title, const std::string& unit);
 

@@ -110,7 +110,7 @@ ReceiverKind kind() {
             const ReceiverTarget target = read_target(settings, scene);
             constexpr TorqueMapReceiver::Force forces[] = {TorqueMapReceiver::Force::momentum,
                                                            TorqueMapReceiver::Force::as_published};
-            // Light pushes on either side, so that the total is the torque on the node.
+            // Both sides count, so that the total is the torque on the node.
             const auto map = std::make_shared<const TorqueMapReceiver>(
                 target.name, scene, read_surface_grid(settings, scene, target, Side::both),
                 settings.get(torque_point), forces[settings.get(force_key)]);

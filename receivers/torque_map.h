@@ -1,4 +1,4 @@
-// Torque of light on part of a scene, bin by bin: where on a plate the torque comes from.
+// Torque of light on part of a scene, per bin.
 #pragma once
 
 #include <array>
@@ -20,30 +20,33 @@ struct TorqueMap {
 };
 
 // `kind = "torque_map"`. Bins: for every bin of the grid, the torque about `about_body_m`, x, y, z
-// in the body frame [N m] (per bin, not per area: the sum over bins is the torque); first of the
-// light straight from the emitters, then, in the same order, of the light that has met a surface
-// before.
+// in the body frame [N m]. The values are per bin, not per area: their sum is the torque. The first
+// half is light directly from the emitters, the second half, in the same order, light that has met
+// a surface before.
 class TorqueMapReceiver final : public Receiver {
  public:
-  // The force of light on an element. `momentum`: momentum in minus momentum out. `as_published`:
-  // equation 29 of the paper ray by ray, power/c |d·n| d with the ray's travel d: the cosine, which
-  // the power on a surface holds already, is applied again, all light is absorbed, and earlier
-  // bounces are ignored. Never gathered.
+  // Force of light on an element.
+  // - `momentum`: momentum in minus momentum out.
+  // - `as_published`: equation 29 of the paper for each ray, power/c |d·n| d with the ray's
+  // direction of travel d. It applies the cosine, which the power on a surface already contains, a
+  // second time; it assumes complete absorption and ignores earlier bounces. Not available with
+  // gathering.
   enum class Force { momentum, as_published };
 
-  // `grid` must have been laid over `scene`.
+  // `grid` must have been made for `scene`.
   TorqueMapReceiver(std::string name, const Scene& scene, SurfaceGrid grid,
                     const Vec3& about_body_m = Vec3::Zero(), Force force = Force::momentum);
 
   size_t bins() const override;
-  // Hits that are scored together must be of one depth.
+  // All hits of one call must have the same depth.
   void score(const Hits& hits, std::span<double> sums) const override;
-  // Entries of direct light, at the front of bins().
+  // Number of bins of direct light; they are the first half of bins().
   size_t direct_entries() const { return bins() / 2; }
   // Maps "torque_x_NAME", "torque_y_NAME", "torque_z_NAME" [N m], signed, and the totals
-  // "torque_x_NAME_body_N_m" ….
+  // "torque_x_NAME_body_N_m" and so on.
   Product product(const BinSums& sums) const override;
 
+  // Requires at least two replicates.
   TorqueMap torque_map(const BinSums& sums) const;
 
   const std::string& name() const { return name_; }

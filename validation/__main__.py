@@ -3,7 +3,7 @@
 import os
 import sys
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the work is shared out by case
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # cases run in parallel
 
 from .prove import main  # noqa: E402
 

@@ -1,4 +1,4 @@
-"""One case diagnosed by the installed program in a folder that holds nothing but what a user would have."""
+"""Diagnosis of one case by the installed program, in a folder that contains only the files of a user."""
 
 import dataclasses
 import gzip
@@ -26,22 +26,22 @@ MEDIAN_OF_SQUARED_NORMAL = 0.454936
 @dataclasses.dataclass(frozen=True)
 class BlindRun:
     program: pathlib.Path
-    program_hash: str  # what has been diagnosed by this very program is not done again
+    program_hash: str  # hash of the program; cases diagnosed by this program are not repeated
     replay: bool = True  # also propagate the improved experiment
-    longest_s: float = 900.0  # of CPU time: for the diagnosis, and for the propagation
+    longest_s: float = 900.0  # limit of CPU time: for the diagnosis, and for the propagation
     threads: int = 1  # of the diagnosis
 
 
 @dataclasses.dataclass(frozen=True)
 class Result:
-    status: int  # exit status; −1: killed, or stopped
+    status: int  # exit status; −1: killed or stopped
     processor_s: float  # user and system, of all threads
-    errors: str  # what it wrote on standard error, at most 4 kB
+    errors: str  # text on standard error, at most 4 kB
 
 
 def run_child(program, arguments, folder, longest_s):
-    """Runs a program in a folder, its standard output thrown away. It is stopped after longest_s of CPU time, or thirty
-    times as long whatever it does. KeyboardInterrupt where a signal from outside ended it."""
+    """Runs a program in a folder without its standard output. The program is stopped after longest_s of CPU time, or
+    after thirty times as long by the clock. Raises KeyboardInterrupt if a signal from outside ended it."""
     with tempfile.TemporaryFile() as errors:
         process = subprocess.Popen([str(program), *arguments], cwd=folder, stdout=subprocess.DEVNULL, stderr=errors)
         whole_s = math.ceil(longest_s)
@@ -57,7 +57,7 @@ def run_child(program, arguments, folder, longest_s):
         errors.seek(0)
         text = errors.read(4096).decode(errors="replace")
     if process.returncode in (-signal.SIGINT, -signal.SIGTERM, 128 + signal.SIGINT, 128 + signal.SIGTERM):
-        raise KeyboardInterrupt  # the benchmark was interrupted: this is no answer
+        raise KeyboardInterrupt  # the benchmark was interrupted: the result does not count
     processor_s = used.ru_utime + used.ru_stime
     if process.returncode < 0:
         is_over = -process.returncode == signal.SIGXCPU or processor_s >= longest_s
@@ -67,7 +67,7 @@ def run_child(program, arguments, folder, longest_s):
 
 
 def _attitudes(path):
-    """(times, quaternions (4, n)) of a recording's rows that have an attitude."""
+    """(times, quaternions (4, n)) of the rows of a recording that contain an attitude."""
     data = path.read_bytes()
     text = (gzip.decompress(data) if path.suffix == ".gz" else data).decode()
     lines = [line for line in text.splitlines() if line and not line.startswith("#")]
@@ -86,8 +86,9 @@ def _attitudes(path):
 
 
 def replayed_chi2(recorded, propagated, noise_arcsec):
-    """The squared deviation of a propagated motion's attitudes from the recorded ones, per number, in units of the
-    noise: the median over that of a normal distribution, so that outliers do not count. NaN without attitudes."""
+    """Squared deviation of the attitudes of a propagated motion from the recorded ones, per number, in units of the
+    noise. It is the median divided by that of a normal distribution, so that outliers have no influence. NaN
+    without attitudes."""
     times_s, read = _attitudes(recorded)
     replay_s, replay = _attitudes(propagated)
     within = times_s <= (replay_s[-1] if replay_s.size else -math.inf)
@@ -96,7 +97,7 @@ def replayed_chi2(recorded, propagated, noise_arcsec):
         return math.nan
     after = np.clip(np.searchsorted(replay_s, times_s), 1, replay_s.size - 1)
     before = after - 1
-    # Between two rows the rate is taken as constant.
+    # The rate is assumed constant between two rows.
     part = np.clip((times_s - replay_s[before]) / (replay_s[after] - replay_s[before]), 0.0, 1.0)
     turn = turn_of(product(replay[:, after], conjugate(replay[:, before])))
     there = product(quaternion_of(part * turn), replay[:, before])
@@ -105,7 +106,7 @@ def replayed_chi2(recorded, propagated, noise_arcsec):
 
 
 def found_noise_arcsec(diagnosis, stated):
-    """The camera's noise about lab x, y, z: as the diagnosis found it, elsewhere as stated."""
+    """Noise of the camera about lab x, y, z: from the diagnosis if it found one, otherwise as stated."""
     noise = list(stated)
     names = ["attitude_x_arcsec", "attitude_y_arcsec", "attitude_z_arcsec"]
     for finding in diagnosis.get("instruments", []):
@@ -116,8 +117,8 @@ def found_noise_arcsec(diagnosis, stated):
 
 
 def recorded_case(case):
-    """(camera noise about lab x, y, z [arcsec], rows a second): what the benchmark notes beside its truth; of cases
-    made elsewhere, what most of them have."""
+    """(camera noise about lab x, y, z [arcsec], rows per second), as stored with the truth. Cases from other sources
+    use typical values."""
     path = pathlib.Path(case) / "truth.json"
     truth = read_json(path)
     noise, rate_Hz = truth.get("camera_noise_arcsec", [37.0, 37.0, 12.0]), truth.get("rate_Hz", 20.0)
@@ -129,12 +130,12 @@ def recorded_case(case):
 
 
 def _replay(case, blind, how):
-    """Propagates the answer and compares it with the recording: what a user would do first."""
+    """Propagates the improved experiment and compares it with the recording."""
     if not (blind / "diagnosis" / "improved.toml").exists():
         return {}
     noise, rate_Hz = recorded_case(case)
-    # Without the camera's own noise, which would be added to that of the recording, and so closely that the rate is as
-    # good as constant between two rows.
+    # Camera noise is off, because the recording already contains it. The output rate is so high that the angular rate
+    # is nearly constant between two rows.
     words = ["propagate", "diagnosis/improved.toml", "--out", "replay", "--quiet", "--threads", "1"]
     words += ["--set", "sensors.camera.noise_arcsec=[0, 0, 0]"]
     words += ["--set", f"propagate.output_rate_Hz={10.0 * rate_Hz:.6f}"]
@@ -150,9 +151,9 @@ def _replay(case, blind, how):
 
 
 def diagnose_blind(case, experiment, blind, how):
-    """Diagnoses `experiment` (a file of the folder `case`) in the folder `blind`, and leaves there what was answered
-    (diagnosis/), how long it took and how it ended (diagnosis/runs.json, error.txt), and how well the improved
-    experiment repeats the recording."""
+    """Diagnoses `experiment` (a file of the folder `case`) in the folder `blind`. It writes there the answer
+    (diagnosis/), times and exit status (diagnosis/runs.json, error.txt), and how well the improved experiment
+    reproduces the recording."""
     case, blind = pathlib.Path(case), pathlib.Path(blind)
     out, stamp = blind / "diagnosis", blind / "done.txt"
     if stamp.exists() and stamp.read_text() == how.program_hash:

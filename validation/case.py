@@ -7,19 +7,19 @@ import numpy as np
 
 from .motion import World
 
-# Kinds in the nominal model of every case: their numbers stand in World and Priors.
+# Kinds in the nominal model of every case; their numbers are in World and Priors.
 NOMINAL_UNBALANCE, NOMINAL_DRAG, NOMINAL_GYRO_BIAS = "static_unbalance", "bearing_drag", "gyro_bias"
 
 
 @dataclasses.dataclass
 class Noise:
-    """How the errors of one instrument differ from independent normal ones of the stated level."""
+    """Deviation of an instrument's errors from independent normal errors of the stated level."""
 
-    scale: float = 1.0  # level, in units of the stated one
-    time_s: float = 0.0  # of their correlation exp(−t/time); 0: none
-    student_degrees: int = 0  # 3, 4, …: of Student's t, scaled to the level; 0: normal
-    outlier_share: float = 0.0  # of the readings, at five times the level
-    step_sigma: float = 0.0  # of what is reported, in units of the stated level; 0: fine
+    scale: float = 1.0  # level, relative to the stated one
+    time_s: float = 0.0  # correlation time in exp(−t/time); 0: uncorrelated
+    student_degrees: int = 0  # degrees of freedom of Student's t, scaled to the level: 3, 4, …; 0: normal
+    outlier_share: float = 0.0  # fraction of readings that are outliers of five times the level
+    step_sigma: float = 0.0  # quantisation step, in units of the stated level; 0: none
 
     @property
     def is_as_stated(self):
@@ -28,8 +28,8 @@ class Noise:
 
 @dataclasses.dataclass
 class Sensors:
-    rate_Hz: float = 10.0  # rows, and the gyro
-    camera_every: int = 1  # rows from one attitude to the next
+    rate_Hz: float = 10.0  # of rows and gyro
+    camera_every: int = 1  # rows between two attitudes
     camera_noise_arcsec: tuple = (37.0, 37.0, 12.0)
     gyro_noise_rad_s: float = 2e-4
     camera: Noise = dataclasses.field(default_factory=Noise)
@@ -41,7 +41,7 @@ class Sensors:
 
 @dataclasses.dataclass
 class Priors:
-    """The statements of the experiment file; sigma 0: as exact."""
+    """Statements of the experiment file; sigma 0 means exact."""
 
     offset_m: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))
     offset_sigma_m: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))
@@ -70,13 +70,13 @@ class Case:
     runs: list = dataclasses.field(default_factory=list)  # recording and hold-out
     # The truth, for scoring.
     verdict: str = ""
-    accept: list = dataclasses.field(default_factory=list)  # sets of names that count as right
+    accept: list = dataclasses.field(default_factory=list)  # sets of names that count as correct
     depends_on: list = dataclasses.field(default_factory=list)
-    # By how much the effects change chi² of the first run beyond all that the uncertain priors and the unknown
-    # start can take up; of the weakest one where there are several.
+    # Increase of chi² of the first run due to the effects, beyond the part that the uncertain priors and the unknown
+    # initial state can absorb. For several effects that of the weakest.
     chi2_gain: float = 0.0
 
 
 def as_written(value):
-    """Six significant digits, as the experiment file states it."""
+    """The value with six significant digits, as in the experiment file."""
     return float(f"{value:.6g}") if math.isfinite(value) else value

@@ -6,7 +6,7 @@ import numpy as np
 
 
 class Draw:
-    """A separate stream for every list of whole numbers, whatever was drawn from other streams."""
+    """A separate random stream for every list of integers, independent of draws from other streams."""
 
     def __init__(self, *stream):
         self.generator = np.random.Generator(np.random.PCG64(np.random.SeedSequence(stream)))

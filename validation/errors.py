@@ -11,4 +11,4 @@ class InputError(Exception):
 
 
 class MotionError(Exception):
-    """A motion that diverges, or a case of which no example shows."""
+    """A motion that diverges, or a case for which no visible example was found."""

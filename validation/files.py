@@ -1,9 +1,9 @@
 """Cases as folders: experiment, recordings, and the truth of what was injected (truth.json).
 
-A case has experiment.toml, run1.csv.gz and run2.csv.gz (or the files that the lists `recordings` and
-`holdouts` of the truth name), oracle.toml (the experiment with the injected effects and their true
-numbers), truth1.toml and truth2.toml (every number true, and the start of each run) and truth.json,
-which is written last: a folder that has one is complete.
+A case has experiment.toml, run1.csv.gz and run2.csv.gz (or the files in the lists `recordings` and
+`holdouts` of the truth), oracle.toml (the experiment with the injected effects and their true numbers),
+truth1.toml and truth2.toml (all numbers true, with the initial state of each run) and truth.json. The
+latter is written last: a folder that contains it is complete.
 """
 
 import bisect
@@ -33,12 +33,12 @@ class CaseFiles:
 
 
 def is_case(folder):
-    """Whether a folder holds a truth."""
+    """Whether a folder contains a truth."""
     return (pathlib.Path(folder) / "truth.json").is_file()
 
 
 def read_json(path):
-    """The object in a JSON file; InputError where there is none."""
+    """The object in a JSON file. Raises InputError if there is none."""
     try:
         value = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
     except OSError as error:
@@ -51,7 +51,7 @@ def read_json(path):
 
 
 def files_of_case(folder):
-    """CaseFiles of a case's folder: of motion run1 and run2, of light what its truth lists."""
+    """CaseFiles of a case's folder: run1 and run2 for motion, the files listed in its truth for light."""
     truth = read_json(pathlib.Path(folder) / "truth.json")
     lists = {key: tuple(pathlib.PurePath(name).name for name in truth[key] if isinstance(name, str))
              for key in ("recordings", "holdouts") if isinstance(truth.get(key), list)}  # fmt: skip
@@ -59,7 +59,7 @@ def files_of_case(folder):
 
 
 def cases_in(folder):
-    """The cases in a folder, by name. InputError where there is none, or a file of one is missing."""
+    """The cases in a folder, sorted by name. Raises InputError if there is none, or if a file of a case is missing."""
     folder = pathlib.Path(folder)
     cases = sorted(f for f in folder.iterdir() if is_case(f)) if folder.is_dir() else []
     if not cases:
@@ -73,7 +73,7 @@ def cases_in(folder):
 
 
 def write_file(path, data):
-    """Writes text or bytes whole: under another name first. Makes the folder."""
+    """Writes text or bytes completely or not at all, under a temporary name first. Creates the folder."""
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"{path.name}.{os.getpid()}.part")
@@ -82,7 +82,7 @@ def write_file(path, data):
 
 
 def write_gzip(path, text):
-    """Writes a text compressed, with the same bytes every time."""
+    """Writes a compressed text; equal texts give equal bytes."""
     write_file(path, gzip.compress(text.encode(), mtime=0))
 
 
@@ -116,8 +116,8 @@ def _platform_text(case):
 
 
 def experiment_text(case, with_truth):
-    """The experiment file. `with_truth` adds the injected effects with their true numbers: the same program given
-    that is the oracle that a diagnosis is measured against."""
+    """Text of the experiment file. `with_truth` adds the injected effects with their true numbers; the diagnosis is
+    compared with the program's result for this experiment (the oracle)."""
     priors, sensors = case.priors, case.sensors
     offset = _with_sigma(_toml(priors.offset_m, 6), _toml(priors.offset_sigma_m, 6), priors.offset_sigma_m[0] == 0.0)
     drag = _with_sigma(f"{priors.drag_N_m_s:.6g}", f"{priors.drag_sigma_N_m_s:.3g}", priors.drag_sigma_N_m_s == 0.0)
@@ -136,12 +136,12 @@ def experiment_text(case, with_truth):
 
 
 def truth_text(case, index):
-    """The experiment with every number true and the start of run `index`: `photorque propagate` repeats that run.
-    None where a law outside the catalogue acts."""
+    """The experiment with all numbers true and the initial state of run `index`, with which `photorque propagate`
+    reproduces that run. None if a law outside the catalogue acts."""
     world, run = case.world, case.runs[index]
     if any(KINDS[e.kind].is_outside for e in world.effects):
         return None
-    # At the clock's zero: the motion itself starts before.
+    # The state at time zero: the simulated motion itself starts earlier.
     begin = read_one(world.but(effects=[e for e in world.effects if e.kind != "attitude_latency"]),
                      run.start, [], [0.0])  # fmt: skip
     text = ("# What acted, and how it began.\n" + _platform_text(case)
@@ -158,7 +158,7 @@ def truth_text(case, index):
 
 
 def _on_rows(commands, times_s, lost):
-    """Commands begin with a row, and that row is never lost: what the log says is what was done."""
+    """Moves each command to the time of a row that is not lost, so that the log agrees with the applied commands."""
     moved = []
     for command in commands:
         row = bisect.bisect_left(times_s, command.time_s - 1e-9)
@@ -170,7 +170,7 @@ def _on_rows(commands, times_s, lost):
 
 
 def recording_text(case, index):
-    """The recording of a run as CSV, read by instruments with noise and, where the case is dirty, faults."""
+    """Recording of a run as CSV, with noise of the instruments and, for a dirty case, faults."""
     draw, run, sensors = Draw(*case.seed, 100 + index), case.runs[index], case.sensors
     times_s, lost = draw_rows(draw, sensors, run.duration_s)
     commands = _on_rows(run.commands, times_s, lost)
@@ -184,7 +184,7 @@ def recording_text(case, index):
         header += ",command_x_N_m,command_y_N_m,command_z_N_m,battery_current_A"
     lines = ["# exported log, tracker and gyro on one clock"] if sensors.dirty else []
     lines.append(header)
-    # As many digits as the times have: a pulse 50 µs off shows after minutes.
+    # As many digits as the times need: an error of 50 µs in a pulse is visible after minutes.
     few = not sensors.dirty and math.remainder(1e5 / sensors.rate_Hz, 10.0) == 0.0
     digits, held = 4 if few else 6, 0
     for i, t in enumerate(times_s.tolist()):

@@ -1,8 +1,8 @@
 """Information in the readings of a case's first run, to first order.
 
 Differences of simulated readings, in units of their noise, are the columns of a linear model. The initial
-state and the uncertain priors (with their priors) may take up what they can; the rest of an effect's
-difference is visible.
+state and the uncertain parameters (with their priors) are free and absorb a part of an effect's difference.
+The remaining part is visible.
 """
 
 import dataclasses
@@ -21,13 +21,14 @@ LINEAR = tuple(kind.name for kind in CATALOGUE if kind.is_linear)
 
 
 def creep_rad_s(world):
-    """At which dry friction is taken to creep: so that it stops no platform faster than in a fifth of a second."""
+    """Rate below which dry friction creeps, chosen so that friction stops no platform in less than a fifth of a
+    second."""
     stop = max((e.numbers["torque_N_m"] for e in world.effects if e.kind == "dry_friction"), default=0.0)
     return max(CREEP_RAD_S, 0.2 * stop / min(world.moments_kg_m2))
 
 
 def independent_share(noise, interval_s):
-    """Errors that stay alike over many readings count for slow changes as one reading in so many."""
+    """Effective number of independent readings per reading for slow changes, for correlated errors."""
     if noise.time_s == 0.0:
         return 1.0
     alike = math.exp(-interval_s / noise.time_s)
@@ -35,12 +36,12 @@ def independent_share(noise, interval_s):
 
 
 class Information:
-    """The linear model about the true motion. `kinds`: whose numbers compete for what an effect does."""
+    """Linear model about the true motion. `kinds`: kinds whose numbers compete with the effects."""
 
     def __init__(self, case, kinds):
         self.case = case
         run, sensors = case.runs[0], case.sensors
-        # A reading every 0.7 s or so, at uneven times, stands for those around it.
+        # One reading about every 0.7 s, at uneven times, represents the readings around it.
         count = int(min(max(run.duration_s / 0.7, 200), 800))
         uneven = Draw(*case.seed, 5).generator.random(count)
         times_s = run.duration_s * (np.arange(count) + uneven) / count
@@ -83,8 +84,9 @@ class Information:
         return np.array(sigmas)
 
     def _add_changes(self):
-        """Of every effect a small fraction taken away; whole where the readings are not proportional to its
-        strength: an appendage's inertia also moves its resonance."""
+        """Adds the change of the readings when an effect is reduced by a small fraction. The effect is removed
+        completely if the readings are not proportional to its strength: an appendage's inertia also shifts its
+        resonance."""
         world, start = self.case.world, self.case.runs[0].start
         for index, effect in enumerate(world.effects):
             kind, others = KINDS[effect.kind], world.effects[:index] + world.effects[index + 1 :]
@@ -106,7 +108,7 @@ class Information:
             for k in range(kind.components):
                 add({kind.strength: kind.step if kind.components == 1 else (kind.step * np.eye(kind.components)[k])},
                     kind.step)  # fmt: skip
-        elif kind.is_tone:  # searched at the frequency of the tone that acts
+        elif kind.is_tone:  # at the frequency of the acting tone
             for acting in world.effects:
                 if acting.kind == name or not KINDS[acting.kind].is_tone:
                     continue
@@ -124,7 +126,7 @@ class Information:
         faster = readings.gyro_rad_s - readings.gyro_rad_s[:, :1]
         rows = np.concatenate((self._camera_weight[:, np.newaxis, np.newaxis] * turns, self._gyro_weight * faster))
         columns = np.moveaxis(rows, 1, -1).reshape(-1, len(worlds))[:, 1:] / np.array([m[2] for m in self._members[1:]])
-        # The rotation that makes them triangular keeps all that counts, lengths and angles, in a few rows.
+        # The triangular factor of a QR decomposition preserves lengths and angles in a few rows.
         columns = np.linalg.qr(columns, mode="r")
         self._columns = {group: columns[:, np.array(at) - 1] for group, at in self._groups.items()}
         priors = np.diag(np.where(prior_sigmas > 0.0, 1.0 / np.where(prior_sigmas > 0.0, prior_sigmas, 1.0), 0.0))
@@ -133,23 +135,23 @@ class Information:
         self._turns_far = bool(np.any(length(turn_of(readings.camera[:, 0])) > 3.0))
 
     def columns_of(self, kind):
-        """The columns of a kind's numbers; none where it is not linear in them."""
+        """Columns of a kind's numbers; empty if the readings are not linear in them."""
         return self._columns.get(kind, np.zeros((self._nuisance.shape[0] - self._nuisance.shape[1], 0)))
 
     def gain(self, change, others=()):
-        """The part of `change`, squared, that neither the start, the uncertain priors nor the columns of `others` can
-        take up: what chi² gains by knowing."""
+        """Squared part of `change` that neither the initial state, the uncertain priors nor the columns of `others`
+        can absorb: the gain in chi² when the effect is known."""
         free = np.hstack([o for o in others]) if len(others) else np.zeros((change.size, 0))
         extra = self._nuisance.shape[1]
         all_columns = np.hstack((self._nuisance, np.vstack((free, np.zeros((extra, free.shape[1]))))))
-        sizes = np.linalg.norm(all_columns, axis=0)  # the numbers behind them have different units
+        sizes = np.linalg.norm(all_columns, axis=0)  # the underlying numbers have different units
         all_columns = all_columns[:, sizes > 0.0] / sizes[sizes > 0.0]
         wanted = np.append(change, np.zeros(extra))
         fit = np.linalg.lstsq(all_columns, wanted, rcond=1e-12)[0]
         return float(np.sum((wanted - all_columns @ fit) ** 2))
 
     def competitors(self):
-        """Kinds of the catalogue with a linear strength, all that could act here."""
+        """Kinds of the catalogue with a linear strength that could act in this case."""
         return [kind for kind in competing_kinds(self.case) if not (KINDS[kind].needs_small_turns and self._turns_far)]
 
 

@@ -10,7 +10,7 @@ from .vectors import product, quaternion_of
 
 
 def draw_rows(draw, sensors, duration_s):
-    """(times, lost): when the rows are taken, and which of them are lost."""
+    """(times, lost): times of the rows, and which rows are lost."""
     count = round(duration_s * sensors.rate_Hz)
     rows = np.arange(count, dtype=float)
     if not sensors.dirty:
@@ -28,7 +28,7 @@ def draw_rows(draw, sensors, duration_s):
 
 
 def errors(draw, noise, count, interval_s):
-    """`count` errors of three channels in units of their stated level."""
+    """`count` errors of three channels, in units of their stated level."""
     random = draw.generator
     fresh = random.standard_normal((3, count))
     if noise.student_degrees > 0:  # Student's t, whose variance is ν/(ν − 2)
@@ -54,13 +54,13 @@ def _any_directions(draw, count):
 
 
 def _blown(draw, count, low, high):
-    """Vectors of any direction, their lengths log-uniform."""
+    """Vectors of random direction with log-uniform lengths."""
     sizes = np.exp(draw.generator.uniform(math.log(low), math.log(high), count))
     return sizes * _any_directions(draw, count)
 
 
 def attitude_cells(draw, sensors, seen):
-    """The cells q_w … q_z of every row, where the camera sees `seen` (4, rows)."""
+    """The cells q_w … q_z of every row for the true attitudes `seen` (4, rows)."""
     count, every = seen.shape[1], sensors.camera_every
     due = np.arange(0, count, every)
     level = np.array(sensors.camera_noise_arcsec)
@@ -70,12 +70,12 @@ def attitude_cells(draw, sensors, seen):
         wild = random.random(due.size) < 0.002
         turns[:, wild] = _blown(draw, int(wild.sum()), 0.01, 0.3)
     q = product(quaternion_of(turns), seen[:, due])
-    if sensors.dirty:  # trackers lose the side of a quaternion now and then
+    if sensors.dirty:  # some trackers flip the sign of a quaternion occasionally
         side = np.cumprod(np.where(random.random(due.size) < 0.01, -1.0, 1.0))
         empty = random.random(due.size) < 0.01
-    else:  # and most report w ≥ 0
+    else:  # most trackers report w ≥ 0
         side, empty = np.where(q[0] < 0.0, -1.0, 1.0), np.zeros(due.size, dtype=bool)
-    # A small turn changes the components by half of itself.
+    # A small rotation changes the components by half its angle.
     q = _quantised(side * q, sensors.camera.step_sigma * 0.5 * ARCSECOND_RAD * min(level))
     cells = [",,,"] * count
     for row, is_empty, components in zip(due.tolist(), empty.tolist(), q.T.tolist(), strict=True):
@@ -85,7 +85,7 @@ def attitude_cells(draw, sensors, seen):
 
 
 def gyro_cells(draw, sensors, rate_rad_s):
-    """The cells of the gyro's three axes, each after its comma, in every row."""
+    """The cells of the gyro's three axes in every row, each after its comma."""
     count = rate_rad_s.shape[1]
     if not sensors.has_gyro:
         return [""] * count

@@ -1,8 +1,8 @@
-"""Every kind of disturbance, independently: its law, how an example is drawn, and what makes it strong.
+"""Independent implementation of every kind of disturbance: its law, random examples, and its strength.
 
-The laws are those of docs/physics.md with the keys of docs/disturbances.md. They share nothing with
-the program but these documents. A law acts on a batch of platforms: vectors are arrays (3, b), numbers
-arrays (b,). `now` is what a law may look at (motion.Now): time_s, attitude, rate, charge_Ah, mass_kg,
+The laws are those of docs/physics.md with the keys of docs/disturbances.md. These documents are the only
+common basis with the program. A law is evaluated for a batch of platforms: vectors are arrays (3, b), numbers
+arrays (b,). `now` contains the inputs of a law (motion.Now): time_s, attitude, rate, charge_Ah, mass_kg,
 offset_m, inertia, gravity, gravity_level, gravity_m_s2, field, up, command, to_body(lab vector).
 """
 
@@ -16,30 +16,30 @@ from .vectors import body_from_lab, cross, dot, length, quaternion_of, times, tu
 
 EARTH_RATE_RAD_S = 7.292115e-5
 EARTH_RADIUS_M = 6.3710087714e6
-CREEP_RAD_S = 1e-6  # of dry friction, the default of docs/disturbances.md
+CREEP_RAD_S = 1e-6  # creep rate of dry friction, the default of docs/disturbances.md
 
 
 @dataclasses.dataclass(frozen=True)
 class Kind:
-    """One kind that can be injected."""
+    """A kind of effect that can be injected."""
 
     name: str
-    draw: Callable  # (Draw, Conditions) -> numbers at a size that is plausible in a laboratory
+    draw: Callable  # (Draw, Conditions) -> numbers of a size that is plausible in a laboratory
     torque: Callable | None = None  # (numbers, now) -> torque in body axes [N m]
     alter: Callable | None = None  # (numbers, platform): changes body, laboratory or instruments
     jumps_s: Callable | None = None  # (numbers, from_s, to_s) -> instants at which the torque jumps
-    strength: str = ""  # key that makes it strong; empty: the effect has no numbers
+    strength: str = ""  # key of the strength; empty: the effect has no numbers
     components: int = 1  # of the strength
-    step: float = 0.0  # of the strength, small enough for differences; 0: its effect is not proportional to it
-    max_factor: float = 30.0  # times the size drawn
-    needs_commands: bool = False  # shows only where torques are commanded
-    needs_small_turns: bool = False  # the law jumps where the platform turns far
-    pairs: bool = False  # may stand beside another effect
-    needs: str = ""  # "command", "charge": the recorded channel that a diagnosis needs
-    is_tone: bool = False  # at one frequency, which a diagnosis has to scan for
+    step: float = 0.0  # of the strength, for differences; 0: the effect is not proportional to the strength
+    max_factor: float = 30.0  # limit, relative to the drawn size
+    needs_commands: bool = False  # visible only with commanded torques
+    needs_small_turns: bool = False  # the law jumps for large rotations
+    pairs: bool = False  # can be combined with another effect
+    needs: str = ""  # recorded channel that a diagnosis needs: "command", "charge"
+    is_tone: bool = False  # acts at one frequency, for which a diagnosis has to scan
     of_gyro: bool = False
-    contained_in: tuple = ()  # kinds of which it is a special case
-    depends_on: tuple = ()  # of a law outside the catalogue: what a fitted function has to follow, any of them
+    contained_in: tuple = ()  # kinds of which this one is a special case
+    depends_on: tuple = ()  # of a law outside the catalogue: variables, any of which a fitted function must depend on
 
     @property
     def is_outside(self):
@@ -47,7 +47,7 @@ class Kind:
 
     @property
     def is_linear(self):
-        """Whether readings change in proportion to all its numbers, which may then compete with others."""
+        """Whether readings are proportional to all its numbers, so that they can compete with others."""
         return not self.is_outside and not self.is_tone and (self.step > 0.0 or not self.strength)
 
 
@@ -57,7 +57,7 @@ class Conditions:
 
     duration_s: float
     moments_kg_m2: np.ndarray  # of inertia, about the body axes
-    max_tone_Hz: float  # four readings of the slowest instrument a period
+    max_tone_Hz: float  # such that the slowest instrument has four readings per period
 
 
 def fixed(key, size):
@@ -140,7 +140,7 @@ def draw_appendage(draw, conditions):
             "inertia_kg_m2": 0.05 * whole}  # fmt: skip
 
 
-# Bearing, contact and air: against the rate.
+# Bearing, contact and air: opposite to the rate.
 
 
 def friction_torque(p, now):
@@ -181,7 +181,7 @@ def turn_laboratory(p, platform):
 
 
 def add_to(name, key):
-    """Adds the numbers of `key` to the platform's instrument error `name`."""
+    """Returns a function that adds the numbers of `key` to the platform's instrument error `name`."""
 
     def alter(p, platform):
         error = getattr(platform, name)
@@ -190,7 +190,7 @@ def add_to(name, key):
     return alter
 
 
-# Laws of no catalogue.
+# Laws outside the catalogue.
 
 
 def cogging_torque(p, now):
@@ -204,7 +204,7 @@ def draw_cogging(draw, conditions):
 
 
 def lean(now):
-    """Axis from the vertical to body z, and the angle between both."""
+    """Axis from the vertical to body z, and the angle between them."""
     across = np.stack((now.up[1], -now.up[0], np.zeros_like(now.up[0])))
     sine = length(across)
     return across / np.maximum(sine, 1e-300), np.arctan2(sine, now.up[2])
@@ -236,8 +236,8 @@ def slack_cable_torque(p, now):
 
 
 def random_torque(p, now):
-    """Forty tones with random phases whose power falls as that of a Gauss–Markov process: smooth, so that any
-    integrator may follow it."""
+    """Forty tones with random phases and the power spectrum of a Gauss–Markov process. The sum is smooth, so that any
+    integrator can follow it."""
     x = 0.04 + 0.24 * np.arange(40)  # angular frequencies times the correlation time
     power = 1.0 / (1.0 + x * x)
     phases = 2 * np.pi * np.random.Generator(np.random.PCG64(int(p["seed"].flat[0]))).random((3, 40))
@@ -338,7 +338,7 @@ def _catalogue():
 
 
 def _outside():
-    """Laws that stand in no catalogue: `diagnose` must say that something unknown acts."""
+    """Laws outside the catalogue; `diagnose` must report that the cause is unknown."""
     return [
         Kind("heading_cogging", draw_cogging, cogging_torque, strength="torque_N_m", depends_on=("heading",)),
         Kind("tilt_cubed", fixed("coefficient_N_m", 0.01), tilt_cubed_torque, strength="coefficient_N_m",
@@ -360,7 +360,7 @@ CATALOGUE = tuple(_catalogue())
 OUTSIDE = tuple(_outside())
 KINDS = {kind.name: kind for kind in CATALOGUE + OUTSIDE}
 
-# The other kinds of the catalogue, and why they are not injected.
+# Other kinds of the catalogue, and the reasons why they are not injected.
 NOT_INJECTED = {
     "stepper_quantization": "found as static_unbalance, which has the same effect",
     "helmholtz_cage": "diagnose does not screen it",

@@ -1,8 +1,8 @@
-"""The two makers of platform, nominal model, instruments and motion.
+"""Two generators of platform, nominal model, instruments and motion.
 
-The first draws platforms of a laboratory (tabletop, dumbbell, hollow ball) that swing a little and turn
-slowly. The second draws what the first never does, so that a search is not tuned to one of them: free
-bodies, fast spins, large tilts, platforms almost at rest, a minute or an hour, other masses and
+The first draws laboratory platforms (tabletop, dumbbell, hollow ball) that swing slightly and rotate
+slowly. The second draws cases that differ from these, so that a search is not tuned to one generator: free
+bodies, fast spins, large tilts, platforms almost at rest, durations of a minute or an hour, other masses and
 instruments.
 """
 
@@ -22,7 +22,7 @@ def _written(values):
 
 
 def draw_commands(draw, duration_s, rate_Hz, torques, largest_N_m):
-    """Torques in pulses at random, where wanted, and a battery current that alternates."""
+    """Random torque pulses, if `torques` is set, and an alternating battery current."""
 
     def on_row(t):
         return round(t * rate_Hz) / rate_Hz
@@ -45,8 +45,8 @@ def draw_commands(draw, duration_s, rate_Hz, torques, largest_N_m):
 
 
 def _draw_truth_within_priors(draw, case, kinds):
-    """The true numbers of the nominal model, off by its uncertainties. An effect that could hide in an uncertain
-    nominal model is injected where that is exact."""
+    """Draws the true numbers of the nominal model within its uncertainties. If an injected effect could be absorbed
+    by an uncertain part of the nominal model, that part is made exact."""
     priors, names = case.priors, {kind.name for kind in kinds}
     if NOMINAL_UNBALANCE in names:
         priors.offset_sigma_m = np.zeros(3)
@@ -74,12 +74,12 @@ def _laboratory_body(draw):
         mass, low, high = draw.uniform(4.5, 5.5), (0.050, 0.053, 0.052), (0.056, 0.058, 0.057)
     while True:
         moments = [draw.uniform(a, b) for a, b in zip(low, high, strict=True)]
-        if 2 * max(moments) <= sum(moments):  # no body has others
+        if 2 * max(moments) <= sum(moments):  # condition for the moments of a body
             return topology, mass, moments
 
 
 def draw_first(draw, plan, kinds):
-    """A case of the first maker in which `kinds` can act."""
+    """A case of the first generator in which `kinds` can act."""
     topology, mass, moments = _laboratory_body(draw)
     field = (draw.uniform(-2e-6, 2e-6), draw.uniform(1.9e-5, 2.5e-5), draw.uniform(-4.3e-5, -3.5e-5))
     world = World(as_written(mass), _written(moments), magnetic_field_T=_written(field),
@@ -104,7 +104,7 @@ def draw_first(draw, plan, kinds):
 
 
 def _any_body(draw):
-    """Any body has moments that are sums of two of three positive numbers."""
+    """Mass and moments of any body: the moments are pairwise sums of three positive numbers."""
     mass = as_written(draw.log_uniform(1.0, 60.0))
     radius_m = 0.1 * math.cbrt(mass / 7.0) * draw.uniform(0.7, 1.5)
     spread = np.array([draw.log_uniform(0.2, 1.0) for _ in range(3)])
@@ -129,7 +129,7 @@ def _second_priors(draw, world, motion, swing_rad_s):
 
 def _second_sensors(draw, plan, motion, kinds):
     sensors = Sensors(rate_Hz=(5.0, 10.0, 20.0)[draw.below(3)])
-    # A camera has to see a fast spin more often than a slow swing.
+    # A camera must observe a fast spin more often than a slow swing.
     sensors.camera_every = 1 if motion == "spin" else (1, 2, 4)[draw.below(3)]
     level = float(round(draw.log_uniform(6.0, 100.0)))
     sensors.camera_noise_arcsec = (level, level, float(round(level * draw.uniform(0.3, 1.5))))
@@ -138,7 +138,7 @@ def _second_sensors(draw, plan, motion, kinds):
     commanded = any(kind.needs_commands or kind.needs in ("command", "charge") for kind in kinds)
     sensors.has_commands = commanded or draw.chance(0.6)
     sensors.dirty = draw.chance(plan.dirty_share)
-    # The turns of a fast spin cannot be counted in a gap of seconds without a gyro.
+    # Without a gyro, the rotations of a fast spin cannot be counted across a gap of seconds.
     if motion == "spin" and not sensors.has_gyro:
         sensors.dirty = False
     return sensors
@@ -162,8 +162,8 @@ def _second_start(draw, motion, topology, still):
 
 
 def draw_second(draw, plan, kinds):
-    """A case of the second maker in which `kinds` can act."""
-    still = any(kind.needs_small_turns for kind in kinds)  # what pulls back to zero attitude jumps at half a turn
+    """A case of the second generator in which `kinds` can act."""
+    still = any(kind.needs_small_turns for kind in kinds)  # restoring torques to zero attitude jump at half a turn
     motion = ("spin", "tumble", "swing", "rest")[2 + draw.below(2) if still else draw.below(4)]
     has_gravity = draw.chance(0.5) if motion == "spin" else motion != "tumble"
     topology = STANDS[draw.below(3)] if has_gravity else "free"
@@ -187,7 +187,7 @@ def draw_second(draw, plan, kinds):
         case.maker += ", an hour"
     wants = any(kind.needs_commands for kind in kinds) or draw.chance(0.4)
     torques = case.sensors.has_commands and wants and not still
-    # A push of some seconds turns the platform by a few hundredths of a radian a second.
+    # A pulse of some seconds changes the rate by a few hundredths of a radian per second.
     gentle = 0.2 if motion == "rest" else 1.0
     largest_N_m = gentle * float(np.mean(moments)) * draw.log_uniform(0.002, 0.008)
     for duration_s in durations_s:

@@ -1,8 +1,8 @@
-"""The moving platform: what really happens in a case.
+"""The true motion of the platform in a case.
 
-Euler's equations of a body with its instruments (docs/physics.md), for one platform or for a batch of
-platforms that differ a little, integrated by SciPy's DOP853 with tight tolerances and split wherever a
-law or a command jumps. A batch takes common steps, so that differences between its members are smooth.
+Euler's equations of a body with its instruments (docs/physics.md), for one platform or for a batch of slightly
+different platforms. They are integrated by SciPy's DOP853 with tight tolerances, in intervals between the jumps
+of laws and commands. A batch has common steps, so that differences between its members are smooth.
 """
 
 import dataclasses
@@ -26,7 +26,7 @@ class Effect:
     numbers: dict
 
     def scaled(self, factor):
-        """The effect made stronger by `factor`: times and frequencies stay."""
+        """The effect with its strength multiplied by `factor`; times and frequencies are unchanged."""
         key = KINDS[self.kind].strength
         if key not in self.numbers:
             return self
@@ -35,7 +35,7 @@ class Effect:
 
 @dataclasses.dataclass
 class World:
-    """Everything that acts on a platform."""
+    """All properties of a platform and its surroundings."""
 
     mass_kg: float = 1.0
     moments_kg_m2: np.ndarray = dataclasses.field(default_factory=lambda: np.ones(3))  # of inertia, principal axes
@@ -59,7 +59,7 @@ class Start:
 
 @dataclasses.dataclass
 class Command:
-    """The command from its time to the next."""
+    """The command from its time until the next command."""
 
     time_s: float
     torque_N_m: np.ndarray
@@ -71,13 +71,13 @@ class Readings:
     """Noiseless readings: arrays (components, members, times)."""
 
     attitude: np.ndarray  # true
-    camera: np.ndarray  # misaligned and late
+    camera: np.ndarray  # with misalignment and latency
     rate_rad_s: np.ndarray
     gyro_rad_s: np.ndarray
 
 
 class _Platforms:
-    """The bodies of a batch, their laboratories and instruments, as the effects change them."""
+    """Bodies, laboratories and instruments of a batch, as changed by the effects."""
 
     def __init__(self, worlds):
         first = worlds[0]
@@ -94,7 +94,7 @@ class _Platforms:
         self.appendage_rad_s, self.appendage_damping, self.appendage_kg_m2 = (np.zeros(size) for _ in range(3))
 
     def part(self, members):
-        """Some members: changes in place change the whole."""
+        """Views of some members: changes in place affect the whole."""
         part = object.__new__(_Platforms)
         for name, value in vars(self).items():
             setattr(part, name, value[..., members] if isinstance(value, np.ndarray) else value)
@@ -155,14 +155,14 @@ class Now:
 
 
 def _members(indices, size):
-    """A slice where the indices follow each other, which is faster."""
+    """A slice if the indices are consecutive, which is faster."""
     if indices == list(range(indices[0], indices[-1] + 1)):
         return slice(None) if len(indices) == size else slice(indices[0], indices[-1] + 1)
     return np.array(indices)
 
 
 class Motion:
-    """The equations of a batch of worlds that share mass, inertia, gravity and field but for their effects."""
+    """Equations of a batch of worlds that share mass, inertia, gravity and field, apart from their effects."""
 
     def __init__(self, worlds, creep_rad_s=CREEP_RAD_S):
         self.worlds, self.size = worlds, len(worlds)
@@ -188,7 +188,7 @@ class Motion:
         self.inverse_inertia = inverse(self.body_inertia)
 
     def _acting(self):
-        """(kind, members, numbers) of all effects: the i-th of a kind in every world together."""
+        """(kind, members, numbers) of all effects; the i-th effect of a kind is combined over all worlds."""
         groups = {}
         for member, world in enumerate(self.worlds):
             seen = {}
@@ -197,7 +197,7 @@ class Motion:
                 groups.setdefault((effect.kind, seen[effect.kind]), []).append((member, effect.numbers))
         for (kind, _), acting in groups.items():
             indices = [member for member, _ in acting]
-            # An alteration in place needs views: runs of members one after the other.
+            # A change in place needs views, hence intervals of consecutive members.
             start = 0
             for i in range(1, len(indices) + 1):
                 if i < len(indices) and indices[i] == indices[i - 1] + 1:
@@ -208,14 +208,14 @@ class Motion:
                 start = i
 
     def _friction_1_s(self):
-        """How fast dry friction stops what creeps: an explicit method would have to follow it."""
+        """Rate [1/s] at which dry friction stops a creeping platform; an explicit method must resolve it."""
         stop_N_m = max((e.numbers["torque_N_m"] for e in self.worlds[0].effects if e.kind == "dry_friction"), default=0)
         return stop_N_m / (self.creep_rad_s * min(self.worlds[0].moments_kg_m2))
 
     @property
     def start_s(self):
-        """The motion starts before the clock, so that a camera may lag; where an appendage swings with the clock,
-        at which a model takes it to be at rest."""
+        """The motion starts before time zero because of a camera's latency. With an appendage it starts at zero, when
+        a model assumes the appendage to be at rest."""
         return 0.0 if self.has_appendage else -0.5
 
     def rates(self, time_s, flat, command, current_A):
@@ -243,7 +243,7 @@ class Motion:
             torque += p.appendage_kg_m2 * pull * axis
             momentum = momentum + p.appendage_kg_m2 * y[9] * axis
         d[4:7] = times(self.inverse_inertia, torque - cross(inertial, momentum))
-        if self.turns:  # the Earth's rate turns in the body's axes
+        if self.turns:  # the Earth's rate rotates in body axes
             d[4:7] += cross(rate, inertial - rate)
         return d.ravel()
 
@@ -256,8 +256,8 @@ class Motion:
         return jumps
 
     def states(self, starts, commands, times_s, tolerance=1e-9, max_step_s=math.inf, fastest_rad_s=math.inf):
-        """States (components, members, times) at rising times, not before start_s. MotionError where the motion
-        diverges or begins to turn faster than fastest_rad_s."""
+        """States (components, members, times) at rising times, not before start_s. Raises MotionError if the motion
+        diverges or exceeds fastest_rad_s."""
         y = np.zeros((10 if self.has_appendage else 8, self.size))
         y[:4] = np.stack([s.attitude for s in starts], axis=1)
         y[4:7] = np.stack([s.rate_rad_s for s in starts], axis=1)
@@ -281,7 +281,7 @@ class Motion:
                 next_command += 1
             if to_s <= from_s:
                 continue
-            inside = 1e-9 * (to_s - from_s)  # laws that jump at either end are looked at just inside
+            inside = 1e-9 * (to_s - from_s)  # laws that jump at an end are evaluated slightly inside
             wanted = (times_s > from_s) & (times_s <= to_s)
             at_s = times_s[wanted]
             if at_s.size == 0 or at_s[-1] < to_s:

@@ -12,7 +12,7 @@ MAX_CASES = 100000
 
 @dataclasses.dataclass
 class Plan:
-    """How many cases of each family, what they are like, and how they are diagnosed."""
+    """Number of cases in each family, their properties, and options of the diagnosis."""
 
     of: str = "motion"
     seed: int = 1
@@ -85,7 +85,7 @@ _RULES = {
 
 
 def _override(tables, change):
-    """`--set prove.seed=2`: a value as TOML, or a bare word."""
+    """Applies `--set prove.seed=2`: the value is TOML, or a bare word."""
     name, equals, text = change.partition("=")
     if not equals or not name.strip():
         raise InputError("", "--set", change, "KEY=VALUE")
@@ -103,7 +103,7 @@ def _override(tables, change):
 
 
 def read_plan(path, overrides=(), seed=None):
-    """The plan in the settings file `path`; InputError for keys that are missing, unknown or out of range."""
+    """The plan in the settings file `path`. Raises InputError for missing, unknown or out-of-range keys."""
     path = pathlib.Path(path)
     try:
         tables = tomllib.loads(path.read_text(encoding="utf-8"))

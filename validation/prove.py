@@ -21,7 +21,7 @@ from .scoring import score_case
 
 
 class Progress:
-    """How far the work is, and how long the rest will take: on one line of a terminal, else every ten seconds."""
+    """Progress of the work and the remaining time: on one line of a terminal, otherwise every ten seconds."""
 
     def __init__(self, what, count, quiet):
         self.what, self.count, self.quiet = what, count, quiet
@@ -80,7 +80,7 @@ def _version(program):
 
 
 def plan_text(plan):
-    """The plan in words."""
+    """Description of the plan."""
     counts = [(plan.per_kind, "of every kind"), (plan.pairs, "pairs")]
     if plan.of == "light":
         counts += [(plan.none, "with nothing missing"), (plan.outside, "of every law outside the catalogue"),
@@ -110,7 +110,7 @@ def _make(plan, index, folder):
 
 
 def make_cases(plan, folder, threads, quiet):
-    """Makes the cases that are not there yet, and returns their folders."""
+    """Makes the missing cases and returns the folders of all cases."""
     note, text = folder / "plan.txt", plan_text(plan) + "\n"
     if note.exists() and note.read_text() != text:
         raise InputError(folder, "--out", f"cases of another plan ({note.name})", "cases of this plan, or a new folder")
@@ -133,7 +133,7 @@ def _diagnose(case, out, plan, how):
     blind, oracle = out / "blind" / case.name, out / "oracle" / case.name
     diagnose_blind(case, "experiment.toml", blind, how)
     score = score_case(case, blind / "diagnosis", oracle / "diagnosis")
-    # The program given the truth states how well these recordings can be predicted.
+    # The diagnosis of the oracle shows how well these recordings can be predicted.
     can_tell = score.verdict == "missing_physics" and not score.is_outside and (case / "oracle.toml").exists()
     if plan.oracle and can_tell:
         given_truth = BlindRun(how.program, how.program_hash, False, how.longest_s, how.threads)
@@ -157,7 +157,7 @@ def diagnose_and_score(folders, out, plan, how, quiet):
 
 
 def report(scores):
-    """The answers that are wrong, the counts and the figures."""
+    """The wrong answers, the counts and the figures."""
     lines = []
     for s in scores:
         if not s.right:
@@ -172,7 +172,7 @@ def report(scores):
 
 
 def _name_of_cases(folder):
-    """Of out/light/cases "light": that its folder holds cases is clear already."""
+    """Name of a folder of cases: "light" for out/light/cases."""
     whole = folder.resolve()
     return whole.parent.name if whole.name == "cases" else whole.name
 

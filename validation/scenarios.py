@@ -1,4 +1,4 @@
-"""The cases of a plan: which effects, on which platform, how strong."""
+"""The cases of a plan: their effects, platform and strength."""
 
 import math
 
@@ -15,18 +15,18 @@ from .strength import fit_strengths, stays_physical
 
 COMPANIONS = tuple(kind for kind in CATALOGUE if kind.pairs)
 ADJUSTABLE = tuple(kind for kind in CATALOGUE if kind.strength)
-VISIBLE_GAIN, HOPELESS_GAIN = 30.0, 6.0  # of chi²: from which on a name is asked for, below which nothing can be said
+VISIBLE_GAIN, HOPELESS_GAIN = 30.0, 6.0  # of chi²: name required above; no conclusion below
 TRIALS = 40
 
 
 def case_count(plan):
-    """How many cases a plan has."""
+    """Number of cases in a plan."""
     return (plan.none + plan.per_kind * len(CATALOGUE) + plan.pairs + plan.outside * len(OUTSIDE) + plan.triples
             + plan.known_unknown + plan.noise_none + plan.noise_effect)  # fmt: skip
 
 
 def _companions(draw, count):
-    """Different kinds of which none is a special case of another."""
+    """Different kinds, none of which is a special case of another."""
     chosen = []
     while len(chosen) < count:
         kind = COMPANIONS[draw.below(len(COMPANIONS))]
@@ -36,7 +36,7 @@ def _companions(draw, count):
 
 
 class Choice:
-    """The parts of a case. Other effects stand together in another `variant`."""
+    """Family, kinds and level of a case. Another `variant` combines other effects."""
 
     def __init__(self, plan, index, variant=0):
         self.level = 0  # of a single effect: 0 strong, 1 medium, 2 weak, 3 below the limit
@@ -50,8 +50,8 @@ class Choice:
         if i < plan.none:
             return self._set("none", [], i)
         i -= plan.none
-        # Round by round over all kinds, so that a part of the plan has all of them: strong, medium, then half of them
-        # weak and half below the limit, and the other way round.
+        # In rounds over all kinds, so that a part of the plan contains all of them. The levels are strong, then
+        # medium, then half of the kinds weak and half below the limit, then vice versa.
         if i < plan.per_kind * len(CATALOGUE):
             number, turn = i // len(CATALOGUE), i // len(CATALOGUE) % 4
             return self._set("single", [CATALOGUE[i % len(CATALOGUE)]], number, turn if turn < 2 else 2 + (turn + i) % 2)
@@ -72,7 +72,7 @@ class Choice:
         if i < plan.noise_none:
             return self._set("noise_none", [], i)
         i -= plan.noise_none
-        # Not in the order of the catalogue, of which a short plan would see but the first.
+        # Not in the order of the catalogue: a short plan would contain only its first kinds.
         return self._set("noise_effect", [ADJUSTABLE[7 * i % len(ADJUSTABLE)]], i)
 
     @property
@@ -83,7 +83,7 @@ class Choice:
 
 
 def _is_of_second_maker(plan, index):
-    """One of every 1/share cases, at a random place among them."""
+    """Selects one of 1/share cases, at a random position among them."""
     share = plan.second_maker_share
     if share <= 0.0:
         return False
@@ -93,7 +93,7 @@ def _is_of_second_maker(plan, index):
 
 
 def _wanted_gain(draw, plan, choice):
-    """Of chi² by each effect."""
+    """Required gain in chi² of each effect."""
     if choice.family != "single":
         return draw.log_uniform(300.0, 2e4)
     if choice.level == 0 and draw.chance(plan.strong_share):
@@ -110,8 +110,8 @@ def _heavy_tails(draw):
 
 
 def _unstated_noise(draw, number):
-    """Three in ten of another level, three correlated, three with heavy tails, and in turn one quantised and one with
-    all of it."""
+    """Three of ten cases have another level, three are correlated, three have heavy tails; the tenth is quantised or,
+    in every second round, has all of these."""
     turn = number % 10
     if turn == 9 and number // 10 % 2 == 0:
         return Noise(step_sigma=draw.uniform(1.0, 3.0))
@@ -124,7 +124,7 @@ def _unstated_noise(draw, number):
         return _correlated(draw)
     if turn % 3 == 2:
         return _heavy_tails(draw)
-    # Far enough from the stated level that it shows in minutes.
+    # Different enough from the stated level to be visible in minutes.
     return Noise(scale=draw.log_uniform(0.6, 0.85) if draw.chance(0.4) else draw.log_uniform(1.2, 2.0))
 
 
@@ -139,7 +139,7 @@ def _draw_noise(draw, sensors, choice):
 
 
 def _judge(case, choice, strengths):
-    """Which verdict and names are right."""
+    """Sets the verdict and names that are correct."""
     known = [kind.name for kind in choice.kinds if not kind.is_outside]
     case.depends_on = [variable for kind in choice.kinds for variable in kind.depends_on]
     case.chi2_gain = strengths.least
@@ -158,7 +158,7 @@ def _judge(case, choice, strengths):
 
 
 def _shows(case, choice, wanted):
-    """Whether the effects show as the family asks; what has no strength shows as it does."""
+    """Whether the effects are visible as the family requires. Effects without a strength are always accepted."""
     if not choice.kinds or not case.world.effects[0].numbers:
         return True
     most = max(wanted)
@@ -178,17 +178,17 @@ def _attempt(plan, choice, index, trial):
     for kind in choice.kinds:
         case.world.effects.append(Effect(kind.name, kind.draw(draw, conditions)))
         wanted.append(_wanted_gain(draw, plan, choice))
-    # The sizes that the kinds draw are those of a platform of the first maker.
+    # The kinds draw sizes for a platform of the first generator.
     case, strengths = fit_strengths(case, wanted, 20.0 if choice.is_second else 1.0)
     _judge(case, choice, strengths)
     return case if _shows(case, choice, wanted) and stays_physical(case) else None
 
 
 def draw_case(plan, index):
-    """The case `index` (0-based): the same plan gives the same cases, in whatever order they are drawn. MotionError
-    where none that shows is found."""
+    """The case `index` (0-based). Equal plans give equal cases, independent of their order. Raises MotionError if no
+    visible case is found."""
     for trial in range(TRIALS):
-        choice = Choice(plan, index, trial // 8)  # effects that never show together make room for others
+        choice = Choice(plan, index, trial // 8)  # other effects are tried if these are never visible together
         try:
             with np.errstate(over="ignore", invalid="ignore"):
                 case = _attempt(plan, choice, index, trial)
@@ -200,6 +200,6 @@ def draw_case(plan, index):
 
 
 def make_case(plan, index, folder):
-    """Draws a case and writes it into `folder`. validation.light has functions of the same names and arguments
-    (case_count, make_case) for plans `of = "light"`."""
+    """Draws a case and writes it to `folder`. validation.light has functions with the same names and arguments
+    (case_count, make_case) for plans with `of = "light"`."""
     files.write_case(draw_case(plan, index), folder)

@@ -1,4 +1,4 @@
-"""Scores of diagnoses against what was injected, for cases of motion and of light."""
+"""Scores of diagnoses compared with the injected effects, for motion and for light."""
 
 import dataclasses
 import itertools
@@ -10,10 +10,10 @@ from .errors import InputError
 from .files import read_json
 from .laws import is_possible
 
-VISIBLE_GAIN = 30.0  # of chi², from which a name is asked for
-HOPELESS_GAIN = 6.0  # and below which nothing can be said
+VISIBLE_GAIN = 30.0  # of chi², above which a name is required
+HOPELESS_GAIN = 6.0  # of chi², below which nothing can be concluded
 STRONG_GAIN = 5e4
-MAX_SIGMA = 5.0  # of the held-out residuals above what is predicted
+MAX_SIGMA = 5.0  # of the held-out residuals above the prediction
 MAX_OVER_ORACLE = 1.1
 MAX_EXPECTED = 1.05
 NAN = math.nan
@@ -21,7 +21,7 @@ NAN = math.nan
 
 @dataclasses.dataclass
 class CaseScore:
-    """The outcome of one case. NaN: not stated."""
+    """Outcome of one case. NaN: not stated."""
 
     name: str
     family: str = "case"
@@ -30,35 +30,35 @@ class CaseScore:
     verdict: str = ""
     true_kinds: list = dataclasses.field(default_factory=list)
     kinds: list = dataclasses.field(default_factory=list)
-    chi2_gain: float = NAN  # what the data can show of the injected effects
+    chi2_gain: float = NAN  # visibility of the injected effects in the data
     answered: bool = False  # a diagnosis.json was written
-    failure: str = ""  # what the program printed instead
+    failure: str = ""  # message of the program instead of an answer
     exit_status: int = 0  # of `diagnose`; −1: stopped
     verdict_right: bool = False
-    right: bool = False  # verdict and set of names are among those that the truth accepts
-    right_within_group: bool = False  # the same, every name swapped for one that it calls indistinguishable
-    false_alarm: bool = False  # something named or "unexplained" where nothing is missing
+    right: bool = False  # verdict and set of names are accepted by the truth
+    right_within_group: bool = False  # as `right`, up to names that the answer calls indistinguishable
+    false_alarm: bool = False  # an effect named, or "unexplained", although nothing is missing
     wrong_name: bool = False  # an effect named that neither acts nor is accepted
-    dependence_right: bool = False  # of an unknown law: the first variable named is the right one
-    known_named: bool = False  # beside an unknown law: exactly the known effects were named
-    indices: int = 0  # effects on one lamp, cell, string or diode whose name is right
-    indices_right: int = 0  # of these, the index is right too
-    impossible: list = dataclasses.field(default_factory=list)  # named numbers beyond the bounds of physics
+    dependence_right: bool = False  # for an unknown law: the first variable named is correct
+    known_named: bool = False  # with an unknown law: exactly the known effects were named
+    indices: int = 0  # effects on one lamp, cell, string or diode with a correct name
+    indices_right: int = 0  # number of these with a correct index
+    impossible: list = dataclasses.field(default_factory=list)  # named numbers outside physical bounds
     confidence: float = NAN
-    claims: list = dataclasses.field(default_factory=list)  # (probability stated of a name, whether it is right)
+    claims: list = dataclasses.field(default_factory=list)  # (stated probability of a name, whether it is correct)
     pulls: list = dataclasses.field(default_factory=list)  # (fitted − true) / sigma
-    holdout_chi2: float = NAN  # per number, after
+    holdout_chi2: float = NAN  # per number, with the improved model
     oracle_chi2: float = NAN
-    predictive_chi2: float = NAN  # what diagnose itself expects of holdout_chi2
-    predictive_sigma: float = NAN  # how many standard errors it lies above
-    expected_chi2: float = NAN  # what the errors of its parameters leave of holdout_chi2
-    fit_chi2: float = NAN  # per number of the recording, after
-    attitude_chi2: float = NAN  # the same of its attitudes alone, by the medians
-    replay_status: float = NAN  # exit status of improved.toml propagated
+    predictive_chi2: float = NAN  # holdout_chi2 predicted by diagnose
+    predictive_sigma: float = NAN  # standard errors of holdout_chi2 above the prediction
+    expected_chi2: float = NAN  # holdout_chi2 expected from the errors of the parameters
+    fit_chi2: float = NAN  # per number of the recording, with the improved model
+    attitude_chi2: float = NAN  # as fit_chi2, of the attitudes only, by medians
+    replay_status: float = NAN  # exit status of the propagation of improved.toml
     replay_chi2: float = NAN
     processor_s: float = NAN
 
-    # Cases by what they ask.
+    # Types of cases.
 
     @property
     def is_outside(self):
@@ -74,8 +74,8 @@ class CaseScore:
 
     @property
     def is_visible(self):
-        """Effects of the catalogue that the readings show; cases made elsewhere do not state their gain, and are all
-        meant to be seen."""
+        """Whether the readings show the effects of the catalogue. Cases from other sources do not state their gain
+        and are all meant to be visible."""
         return self.is_inside and self.true_verdict == "missing_physics" and not self.chi2_gain <= VISIBLE_GAIN
 
     @property
@@ -84,8 +84,8 @@ class CaseScore:
 
     @property
     def replays_as_stated(self):
-        """Whether improved.toml propagates and its attitudes lie no further from the recorded ones than the diagnosis
-        states of its fit, by a third and 0.2."""
+        """Whether improved.toml propagates and its attitudes deviate from the recorded ones by no more than the
+        diagnosis states for its fit, with a tolerance of a third and 0.2."""
         stated = self.attitude_chi2 if math.isfinite(self.attitude_chi2) else self.fit_chi2
         return self.replay_status == 0 and self.replay_chi2 <= 0.2 + 1.33 * max(1.0, stated)
 
@@ -107,7 +107,7 @@ def _numbers(value):
 
 
 def _true_number(effect, key):
-    """Older cases write "attitude_latency_s" where the experiment's key is "latency_s"."""
+    """True number of a key. Older cases write "attitude_latency_s" for the experiment's key "latency_s"."""
     unit = key.rfind("_")
     return effect.get(key, effect.get(effect.get("kind", "") + key[unit:]) if unit >= 0 else None)
 
@@ -120,7 +120,7 @@ def _value_and_truth(parameters, truth):
 
 
 def _is_turned_round(parameters, truth):
-    """Whether a sinusoid was found with its amplitude turned round, half a period later: the same one."""
+    """Whether a sinusoid was found with inverted amplitude half a period later, which is the same sinusoid."""
     if "phase" not in parameters:
         return False
     for key, value, _, wanted in _value_and_truth(parameters, truth):
@@ -133,7 +133,7 @@ def _pulls(found, truth):
     parameters = found.get("parameters", {})
     turned, pulls = _is_turned_round(parameters, truth), []
     for key, value, sigma, wanted in _value_and_truth(parameters, truth):
-        if key == "axis" or not len(value) == len(sigma) == len(wanted):  # sign and length of an axis mean nothing
+        if key == "axis" or not len(value) == len(sigma) == len(wanted):  # sign and length of an axis have no meaning
             continue
         flips = turned and len(wanted) == 3
         for v, s, w in zip(value, sigma, wanted, strict=True):
@@ -146,14 +146,14 @@ def _pulls(found, truth):
 
 
 def _can_be(doubles, wanted):
-    """Whether the set of names, each swapped for itself or one of its doubles, can be `wanted`."""
+    """Whether the set of names equals `wanted` after each name is kept or replaced by one of its alternatives."""
     return len(doubles) == len(wanted) and any(
         all(name in names for name, names in zip(order, doubles, strict=True)) for order in itertools.permutations(wanted)
     )
 
 
 def _judge(score, truth, diagnosis, nominal):
-    """Compares the answer with the truth. KeyError, TypeError or AttributeError where one of them lacks something."""
+    """Compares the answer with the truth. Raises KeyError, TypeError or AttributeError if one of them is incomplete."""
     accept, outside = truth["accept"], score.is_outside
     acceptable, doubles = {name for names in accept for name in names}, []
     for effect in diagnosis["effects"]:
@@ -182,7 +182,7 @@ def _judge(score, truth, diagnosis, nominal):
             score.right = score.right or sorted(names) == sorted(score.kinds)
             score.right_within_group = score.right_within_group or _can_be(doubles, names)
     score.known_named = outside and score.right and bool(score.kinds)
-    # Below the limit, the effects may be named, or none.
+    # Below the limit, the effects may be named or not.
     either = not outside and [] in accept and (score.right or score.verdict == "consistent")
     score.verdict_right = score.verdict == score.true_verdict or either
     score.false_alarm = score.true_verdict == "consistent" and not score.right
@@ -200,8 +200,8 @@ def _judge(score, truth, diagnosis, nominal):
 
 
 def score_case(case, diagnosis, oracle):
-    """The CaseScore of the folder `case`, from diagnosis.json in `diagnosis` and, where there is one, in `oracle`.
-    InputError when truth.json cannot be understood; a diagnosis that cannot counts as no answer."""
+    """CaseScore of the folder `case`, from diagnosis.json in `diagnosis` and, if it exists, in `oracle`. Raises
+    InputError if truth.json is invalid; an invalid diagnosis counts as no answer."""
     case, diagnosis, oracle = pathlib.Path(case), pathlib.Path(diagnosis), pathlib.Path(oracle)
     truth = read_json(case / "truth.json")
     score = CaseScore(truth.get("name", case.name), truth.get("family", "case"), truth.get("maker", ""))
@@ -263,7 +263,7 @@ def _question(scores, text, belongs, hits, aim=""):
 
 
 def questions(scores):
-    """The headline counts: rows of (question, Fraction, aim), those that any case asks."""
+    """Main counts: rows of (question, Fraction, aim), for questions that apply to at least one case."""
 
     def right(s):
         return s.right
@@ -347,7 +347,7 @@ def claims_of_verdicts(scores):
 
 
 def calibration(claims, edges):
-    """Rows (from, to, Fraction, mean stated) of the bins that hold claims (stated probability, whether right)."""
+    """Rows (from, to, Fraction, mean stated) of the bins that contain claims (stated probability, whether correct)."""
     rows = []
     for low, high in itertools.pairwise(edges):
         within = [c for c in claims if c[0] >= low and (c[0] < high or high == 1.0)]
@@ -358,8 +358,8 @@ def calibration(claims, edges):
 
 
 def calibration_error(claims):
-    """Mean distance between what is stated and what comes true, in ten equal bins, weighted by how many claims each
-    holds (Naeini, Cooper and Hauskrecht, AAAI 2015)."""
+    """Mean distance between stated probability and frequency, in ten equal bins, weighted by the number of claims
+    (Naeini, Cooper and Hauskrecht, AAAI 2015)."""
     rows = calibration(claims, [i / 10.0 for i in range(11)])
     return sum(abs(stated * right.of - right.hits) for _, _, right, stated in rows) / len(claims)
 

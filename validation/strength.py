@@ -1,4 +1,4 @@
-"""How strong the effects of a case are: fitted to what its readings can show of each."""
+"""Strength of the effects of a case, adjusted to their visibility in the readings."""
 
 import dataclasses
 import itertools
@@ -13,16 +13,16 @@ from .motion import Motion
 from .vectors import length
 
 WITHIN_NOISE = 12.0  # of chi²
-LINEAR_GAIN = 5e4  # up to which the strength is fitted to its own motion
+LINEAR_GAIN = 5e4  # above it the strength is extrapolated instead of simulated
 ROUNDS = 3
 FASTEST_RAD_S = 4.0  # of recordings
 
 
 @dataclasses.dataclass
 class Strengths:
-    """Gain in chi² of the first run by knowing each effect, with all numbers of the case's other effects free; of a
-    law outside the catalogue, with those of the whole catalogue free. `doubles`: sets of kinds that leave within the
-    noise what one or two of the effects do."""
+    """Gain in chi² of the first run when each effect is known, with all numbers of the case's other effects free; for
+    a law outside the catalogue, with all numbers of the catalogue free. `doubles`: sets of kinds that reproduce
+    one or two of the effects within the noise."""
 
     gains: list
     doubles: list
@@ -33,7 +33,7 @@ class Strengths:
 
 
 def _others(information, case, without):
-    """Columns of what else acts: its numbers, or its change where these enter otherwise."""
+    """Columns of the other effects: those of their numbers, or their change if they are not linear."""
     others = []
     for i, effect in enumerate(case.world.effects):
         if i in without:
@@ -54,8 +54,8 @@ def _gains(information, case, against_catalogue):
 
 
 def _doubles(information, case, factors):
-    """Kinds that could pass for one of the effects, or for two of them at once. `factors`: by how much each effect is
-    to be stronger yet."""
+    """Kinds that could replace one of the effects, or two of them at once. `factors`: factors by which each effect
+    will still be strengthened."""
     names = [e.kind for e in case.world.effects if not KINDS[e.kind].is_outside]
     doubles = []
     swaps = [(i,) for i in range(len(names))] + list(itertools.combinations(range(len(names)), 2))
@@ -71,21 +71,21 @@ def _doubles(information, case, factors):
 
 
 def stays_physical(case):
-    """Whether the platform of both runs is a body, stays upright where it stands on something, and turns no faster
-    than instruments can follow."""
+    """Whether the platform of both runs is physically possible, stays upright if it stands on a support, and rotates
+    no faster than instruments can follow."""
     motion = Motion([case.world], creep_rad_s(case.world))
     moments = np.linalg.eigvalsh(motion.platforms.inertia[..., 0])
     if not (moments[0] > 0.0 and moments[2] <= moments[0] + moments[1]):
         return False
     for run in case.runs:
         times_s = np.arange(0.0, run.duration_s, 0.5)
-        try:  # what spins up without end is not followed to the end
+        try:  # stop early if the platform spins up without limit
             readings = motion.read([run.start], run.commands, times_s, 1e-6, fastest_rad_s=2.0 * FASTEST_RAD_S)
         except MotionError:
             return False
         rate, up = length(readings.rate_rad_s).max(), readings.attitude[:, 0]
         upright = 1.0 - 2.0 * (up[1] ** 2 + up[2] ** 2)
-        # Between two readings of the camera no turn may be missed.
+        # Between two camera readings the rotation must remain unambiguous.
         if rate > FASTEST_RAD_S or rate * case.sensors.camera_every / case.sensors.rate_Hz > 0.8:
             return False
         if case.topology != "free" and upright.min() < math.cos(math.radians(60.0)):
@@ -94,13 +94,13 @@ def stays_physical(case):
 
 
 def _extrapolation(case, index, by, loosened):
-    """By how much effect `index` can be made stronger where chi² is to gain `by` times more, taken back until the
+    """Factor by which effect `index` can be strengthened to increase its gain in chi² `by` times, reduced until the
     motion stays physical."""
     effect = case.world.effects[index]
     if not effect.numbers or not math.isfinite(by):
         return 1.0
     kind = KINDS[effect.kind]
-    room = 10.0 if kind.max_factor >= 30.0 else 1.0  # a torque may be ten times what is common; an angle has a limit
+    room = 10.0 if kind.max_factor >= 30.0 else 1.0  # a torque may exceed the usual range tenfold; an angle is limited
     factor = min(math.sqrt(by), max(1.0, room * kind.max_factor * loosened))
     while factor > 1.05:
         effects = list(case.world.effects)
@@ -112,12 +112,12 @@ def _extrapolation(case, index, by, loosened):
 
 
 def fit_strengths(case, wanted, loosened):
-    """(case, Strengths): the effects scaled until each gains about what is `wanted` of it, as far as its kind allows
-    `loosened` times over. More than 5e4 is extrapolated from there in proportion to the squared strength."""
+    """(case, Strengths): the effects are scaled until each has about the `wanted` gain, within the limits of its kind
+    times `loosened`. Above a gain of 5e4 the strength is extrapolated with its square."""
     count = len(case.world.effects)
     if count == 0:
         return case, Strengths([], [])
-    reached, beyond = np.ones(count), np.ones(count)  # times what was drawn; the fraction that the catalogue leaves
+    reached, beyond = np.ones(count), np.ones(count)  # times the drawn size; fraction that the catalogue leaves
     acting = [e.kind for e in case.world.effects]
     for round_number in range(ROUNDS + 1):
         final = round_number == ROUNDS

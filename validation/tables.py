@@ -19,7 +19,7 @@ def _joined(names, none="-"):
 
 
 def summary(scores):
-    """The headline counts as (columns, rows)."""
+    """The main counts as (columns, rows)."""
     rows = [(text, aim or "-", f.hits, f.of, f.hits / f.of, f.low, f.high) for text, f, aim in questions(scores) if text not in _REPEATED]
     return ("question", "aim", "hits", "of", "share", "low_95", "high_95"), rows
 
@@ -93,7 +93,7 @@ TABLES = {"proof": summary, "proof_by_family": by_family, "proof_by_kind": by_ki
 
 
 def csv_text(table, provenance):
-    """A table as CSV behind lines of provenance; NaN is an empty cell."""
+    """A table as CSV after lines of provenance; NaN is an empty cell."""
     columns, rows = table
     out = io.StringIO()
     for key, value in provenance.items():
@@ -106,7 +106,7 @@ def csv_text(table, provenance):
 
 
 def summary_json(scores, provenance):
-    """Every figure as value and standard error, and what made it."""
+    """Every figure with value and standard error, and the provenance."""
     summary = {name: {"value": value, "standard_error": error} for name, (value, error) in figures(scores).items()}
     return json.dumps(summary | {"provenance": provenance}, indent=2, ensure_ascii=False) + "\n"
 
@@ -120,7 +120,7 @@ def _cell(value, digits):
     return f"{value:{digits}}" if math.isfinite(value) else "–"
 
 
-# Columns of the CSV files whose headings in a document are other words.
+# Columns of the CSV files with other headings in documents.
 _HEADINGS = {"concealed": "injected effect", "share": "fraction", "share_right": "fraction right", "mean_stated": "mean stated",
              "low_95": "95 % from", "high_95": "to", "wrong_name": "wrong name", "median_s": "median s", "largest_s": "largest s",
              "too_weak": "too weak", "too_weak_right": "of these right"}  # fmt: skip
@@ -148,7 +148,7 @@ def _wrong_cases(scores):
     return _markdown_table(("case", "truth", "χ² gain", "answer"), rows) if rows else "None.\n"
 
 
-# Figures and questions that other rows of the document contain too; the CSV files have them.
+# Figures and questions that are repeated in other rows of the document; they are only in the CSV files.
 _REPEATED = {"cases", "holdout_within_10_percent_of_oracle", "processor_over_60_s", "answers without a confidence", "exits other than 0",
              "missing_physics without a stated prediction"}  # fmt: skip
 

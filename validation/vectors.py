@@ -1,6 +1,6 @@
 """Arithmetic of vectors (3, …), quaternions (4, …; w, x, y, z, lab from body) and matrices (3, 3, …).
 
-The trailing axes are those of a batch: every function takes one platform, many, or many at many times."""
+The last axes are those of a batch: every function accepts one platform, many, or many at many times."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ import numpy as np
 
 
 def _bilinear(rows, columns, terms):
-    """The matrix that takes the products a_i b_k (i major) to sums of them: terms are (row, i, k, factor)."""
+    """Matrix that maps the products a_i b_k (i major) to sums of them: terms are (row, i, k, factor)."""
     matrix = np.zeros((rows, columns * columns))
     for row, i, k, factor in terms:
         matrix[row, columns * i + k] += factor
@@ -30,7 +30,7 @@ _ROTATION = _bilinear(9, 4, [
 
 
 def _apply(matrix, a, b, shape=None):
-    # One product of matrices costs less than a dozen operations on short arrays.
+    # One matrix product is faster than a dozen operations on short arrays.
     products = a[:, np.newaxis] * b
     tail = products.shape[2:]
     sums = matrix @ products.reshape(matrix.shape[1], -1)
@@ -50,18 +50,18 @@ def length(a):
 
 
 def times(matrix, v):
-    """The matrix product."""
+    """Matrix times vector."""
     return (matrix * v).sum(axis=1)
 
 
 def inverse(matrix):
-    """Of symmetric matrices."""
+    """Inverse of symmetric matrices."""
     a, b, c = cross(matrix[1], matrix[2]), cross(matrix[2], matrix[0]), cross(matrix[0], matrix[1])
     return np.stack((a, b, c)) / dot(matrix[0], a)
 
 
 def product(a, b):
-    """Of two quaternions: the rotation `b` followed by `a`."""
+    """Product of two quaternions: the rotation `b` followed by `a`."""
     return _apply(_PRODUCT, a, b)
 
 
@@ -79,12 +79,12 @@ def normalised(q):
 
 
 def body_from_lab(q):
-    """The rotation matrix that turns lab components into body components, of a unit quaternion."""
+    """Rotation matrix from lab to body components, for a unit quaternion."""
     return _apply(_ROTATION, q, q, (3, 3))
 
 
 def quaternion_of(turn):
-    """The rotation by the vector `turn` [rad]."""
+    """Quaternion of the rotation vector `turn` [rad]."""
     turn = np.asarray(turn, dtype=float)
     angle = length(turn)
     scale = 0.5 * np.sinc(angle / (2 * np.pi))  # sin(angle/2) / angle
@@ -92,7 +92,7 @@ def quaternion_of(turn):
 
 
 def turn_of(q):
-    """The rotation vector of a quaternion, by the short way: angles up to π."""
+    """Rotation vector of a quaternion with an angle of at most π."""
     q = np.where(q[0] < 0.0, -q, q)
     sine = length(q[1:])
     small = sine < 1e-12

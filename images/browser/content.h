@@ -1,4 +1,4 @@
-// The content of a page as the JSON that its script reads, and that script.
+// Content of a page as the JSON that its script reads, and the script itself.
 #pragma once
 
 #include <cstdint>
@@ -12,40 +12,41 @@
 
 namespace photorque {
 
-// {"f32": "…"}, {"f64": "…"}, {"u32": "…"}: little-endian numbers in base64. NaN stays NaN.
+// Encoded numbers {"f32": "…"}, {"f64": "…"} or {"u32": "…"}: little-endian, in base64. NaN is
+// preserved.
 nlohmann::ordered_json packed(std::span<const float> numbers);
 nlohmann::ordered_json packed(std::span<const double> numbers);
 nlohmann::ordered_json packed(std::span<const uint32_t> numbers);
-// As {"f32": …}, rounded.
+// As {"f32": …}, rounded to single precision.
 nlohmann::ordered_json packed_rounded(std::span<const double> numbers);
-// {"u16": "…", "low", "step"}: value = low + step · n for n < 65535, which stands for NaN; within
-// half a step, 1/131068 of the range.
+// Encoded as {"u16": "…", "low", "step"}: value = low + step · n for n < 65535; n = 65535 is NaN.
+// The error is at most half a step, 1/131068 of the range.
 nlohmann::ordered_json packed_coarse(std::span<const double> numbers, double low, double high);
 
-// `json` as text that may stand between <script> and </script>: no character of it can end the
+// `json` as text that is safe between <script> and </script>: no character of it can end the
 // element or begin a comment.
 std::string script_text(const nlohmann::ordered_json& json);
 
-// Maps reduced to the limit by averaging blocks of bins, long tables cut, curves thinned; each of
-// them notes it.
+// Content of a page within its limits: large maps are reduced by averaging blocks of bins, long
+// tables are cut, curves are thinned. Each of them contains a note about it.
 nlohmann::ordered_json page_content(const RunPage& page, const PageLimits& limits);
 
-// By how much the sides of each map are divided so that together they keep to `most_bins`: those
-// with the most bins first.
+// Factors by which the sides of each map are divided, so that all maps together have at most
+// `most_bins` bins. Maps with the most bins are reduced first.
 std::vector<int> map_reductions(const std::vector<Map>& maps, size_t most_bins);
 
-// `map` with blocks of `factor` × `factor` bins as one: the mean of those that have a value. The
-// errors of blocks are not known, as those of bins are correlated, and are left out.
+// `map` with blocks of `factor` × `factor` bins as one bin: the mean of those that have a value. It
+// has no errors, because those of the bins are correlated.
 Map reduced(const Map& map, int factor);
 
-// `product` has the maps that painted surfaces name. Of a scene with more triangles than the limit
-// the parts with the most are shown as boxes.
+// JSON of the scene. `product` must contain the maps that painted surfaces name. If the scene has
+// more triangles than the limit, the parts with the most triangles are shown as boxes.
 nlohmann::ordered_json stage_content(const SceneStage& stage, const Product& product,
                                      const PageLimits& limits);
 
-// script/page.min.js: all that script/*.js and three.js make, bundled by tools/page_script.
+// The file script/page.min.js: script/*.js and three.js, bundled by tools/page_script.
 std::string_view page_script();
-// script/page.css.
+// The file script/page.css.
 std::string_view page_style();
 
 }  // namespace photorque

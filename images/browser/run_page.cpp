@@ -17,7 +17,7 @@ Json packed_as(const char* type, std::span<const T> numbers) {
   return {{type, base64(std::as_bytes(numbers))}};
 }
 
-// The policy forbids the page to fetch anything, also by its script.
+// The Content-Security-Policy forbids the page and its script to fetch anything.
 std::string document_html(const std::string& title, const Provenance& provenance,
                           const std::string& script_policy, const std::string& body) {
   std::string html =
@@ -67,7 +67,7 @@ Json packed_coarse(std::span<const double> numbers, double low, double high) {
 }
 
 std::string script_text(const Json& json) {
-  // In JSON these stand within strings alone. U+2028 and U+2029 end lines of a script.
+  // In JSON these characters occur only within strings. U+2028 and U+2029 end lines of a script.
   std::string text;
   const std::string plain = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.reserve(plain.size());
@@ -100,8 +100,8 @@ std::string page_html(const RunPage& page, const PageLimits& limits) {
   body += "<script id=\"run\" type=\"application/json\">";
   const std::string content = script_text(page_content(page, limits));
   body += content;
-  // The content cannot name its own hash, so that no other script runs; and the same run gives the
-  // same page.
+  // The nonce is a hash of the content, which cannot contain its own hash: no script inside the
+  // content can run. Equal runs give equal pages.
   const std::string nonce = content_hash(content);
   body += "</script>\n<script nonce=\"" + nonce + "\">\n";
   body += page_script();

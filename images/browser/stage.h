@@ -1,4 +1,4 @@
-// The three-dimensional scene of a page, as plain data: a body among lamps, in one state or many.
+// The three-dimensional scene of a page as plain data: a body among lamps, in one or many states.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace photorque {
 
-// Triangles in one colour, body frame.
+// Triangles of one colour, body frame.
 struct StagePart {
   std::string name;
   Rgb colour;
@@ -18,22 +18,21 @@ struct StagePart {
   std::vector<uint32_t> triangles;  // three vertices each, counter-clockwise seen from the front
 };
 
-// Triangles on which a map lies, body frame. (0, 0) is the lower left corner of the map, (1, 1) the
-// upper right one.
+// Triangles on which a map is painted, body frame. (0, 0) is the lower left corner of the map, (1,
+// 1) the upper right one.
 struct PaintedSurface {
   std::string name;  // of the receiver
   std::vector<float> position_m;
-  std::vector<float> uv;  // two numbers for each vertex
+  std::vector<float> uv;  // two numbers per vertex
   std::vector<uint32_t> triangles;
   enum class Side { front, back, both };
   Side side = Side::both;
-  // A map of the page's product by its name; without one, a map for each light of the stage, all
-  // of one size.
+  // Name of a map of the page's product. If empty: one map per light of the stage, all of one size.
   std::string map;
   std::vector<Map> map_of_light = {};
 };
 
-// Surfaces that are painted together, in one colour scale.
+// Surfaces that are painted together and share a colour scale.
 struct Painting {
   std::string title;
   std::string unit;
@@ -41,13 +40,13 @@ struct Painting {
   std::vector<PaintedSurface> surfaces;
 };
 
-// Where light comes from, lab frame.
+// A lamp, lab frame.
 struct StageLamp {
   std::string name;
   Vec3 position_lab_m = Vec3::Zero();
-  Vec3 direction_lab = -Vec3::UnitZ();  // in which it shines
+  Vec3 direction_lab = -Vec3::UnitZ();  // direction of emission
   double radius_m = 0.0;                // of its aperture; 0: a point
-  bool is_far = false;                  // parallel light: only the direction means something
+  bool is_far = false;                  // parallel light: only the direction is used
 };
 
 // A vector at the body's origin that every state has.
@@ -56,9 +55,9 @@ struct StageArrow {
   std::string unit;
   enum class Kind { force, torque, turn };
   Kind kind = Kind::force;
-  // Length of a unit on the page [m]; 0: the longest of all states is drawn as long as the body.
+  // Length on the page [m] per unit; 0: the longest of all states is as long as the body.
   double m_per_unit = 0.0;
-  std::string remark = {};  // beside its name: "drawn 1000 times larger"
+  std::string remark = {};  // shown beside the name: "drawn 1000 times larger"
 };
 
 // Copies of the body that are shown together; the first is drawn solid, others see-through.
@@ -66,21 +65,22 @@ struct StageBody {
   std::string name;  // "measured"
 };
 
-// One moment or one attitude.
+// One instant or one attitude.
 struct StageState {
-  std::vector<Quat> lab_from_body;  // one for each body
-  // One for each arrow, and its standard error, in body axes.
+  std::vector<Quat> lab_from_body;  // one per body
+  // One vector per arrow, and its standard error, in body axes.
   std::vector<Vec3> arrow_body = {}, arrow_error_body = {};
-  std::vector<Estimate> figures = {};  // one for each of the stage's
+  std::vector<Estimate> figures = {};  // one per figure of the stage
 };
 
-// The axis of a slider. Several axes span a grid of states, the first running fastest.
+// Axis of a slider. Several axes span a grid of states; the first varies fastest.
 struct StageAxis {
   std::string name;  // "tilt"
   std::string unit;
   std::vector<double> values;  // rising
-  bool plays = false;          // a time: states between two are turned evenly, and it can be played
-  // Text for each value, shown instead of the number; empty: numbers are shown.
+  // a time axis: it can be played, and attitudes between states are interpolated
+  bool plays = false;
+  // Text per value, shown instead of the number; empty: numbers are shown.
   std::vector<std::string> names = {};
 };
 
@@ -95,7 +95,7 @@ struct StageCamera {
   double field_of_view_deg = 34.0;  // across the width
 };
 
-// The sizes of `states` and of `axes` agree: their product, or one state without axes.
+// The number of states must be the product of the sizes of the axes, or one without axes.
 struct SceneStage {
   std::vector<StagePart> parts;
   std::vector<Painting> paintings;
@@ -105,13 +105,14 @@ struct SceneStage {
   std::vector<StageFigure> figures;
   std::vector<StageAxis> axes;
   std::vector<StageState> states;
-  // The light as it was traced at some attitudes: rays from their lamp to where they first meet
-  // something, x, y, z of start and end of each.
+  // Rays of each light traced at some attitudes, from the lamp to their first hit: x, y, z of start
+  // and end of each ray.
   std::vector<std::vector<float>> rays_of_light_lab_m;
-  std::vector<size_t> light_of_state;  // which of them a state shows; empty: each its own
+  // Index of the light that a state shows; empty: each state shows its own.
+  std::vector<size_t> light_of_state;
   StageCamera camera;
-  double radius_m = 1.0;    // of a sphere about the origin that holds the body
-  std::string remark = {};  // difference from reality, as printed
+  double radius_m = 1.0;    // radius of a sphere about the origin that contains the body
+  std::string remark = {};  // a note on deviations from reality, as printed
 };
 
 }  // namespace photorque

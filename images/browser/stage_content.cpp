@@ -23,7 +23,7 @@ Json rgb_json(const Rgb& colour) {
   return bytes;
 }
 
-// The box along the body axes that holds a part, in its place.
+// Replaces a part by its bounding box along the body axes.
 StagePart box_of(const StagePart& part) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   std::array<float, 3> low = {infinity, infinity, infinity},
@@ -41,7 +41,7 @@ StagePart box_of(const StagePart& part) {
   return box;
 }
 
-// All parts, the largest as boxes until the rest keeps to the limit.
+// All parts; the largest become boxes until the number of triangles is within the limit.
 std::vector<StagePart> shown_parts(std::vector<StagePart> parts, size_t most_triangles,
                                    size_t& boxes) {
   size_t total = 0;
@@ -87,7 +87,7 @@ Json surface_json(const PaintedSurface& surface, const ColourScale& scale) {
   return json;
 }
 
-// One scale for everything that is painted together, in all states.
+// One scale for all surfaces that are painted together, over all states.
 ColourScale scale_of(const Painting& painting, const Product& product) {
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
   const auto extend = [&](const Map& map) {
@@ -149,7 +149,7 @@ Json arrows_json(const std::vector<StageArrow>& arrows) {
   return list;
 }
 
-// Columns of numbers over all states, one after the other.
+// Columns of numbers, concatenated over all states.
 Json states_json(const SceneStage& stage) {
   std::vector<double> attitudes, arrows, errors, figures, figure_errors;
   for (const StageState& state : stage.states) {

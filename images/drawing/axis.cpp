@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-// Ten to an integer power, correctly rounded where std::pow need not be.
+// Integer power of ten, correctly rounded, which std::pow does not guarantee.
 double ten_to(int exponent) {
   return std::strtod(("1e" + std::to_string(exponent)).c_str(), nullptr);
 }
@@ -24,7 +24,7 @@ struct Step {
   }
 };
 
-// Counts of steps from zero to the first and the last tick; the ends forgive rounding.
+// First and last tick as multiples of the step; tolerates rounding at the ends.
 struct Span {
   double first = 0.0;
   double last = 0.0;
@@ -99,7 +99,7 @@ Axis axis_with(const AxisRange& range, bool log, const std::string& label, int a
   return axis;
 }
 
-// Whether neighbouring numbers stay apart along a horizontal axis.
+// Whether neighbouring numbers do not overlap along a horizontal axis.
 bool numbers_fit(const Axis& axis, double length) {
   double previous_end = -1e300;
   for (size_t i = 0; i < axis.ticks.values.size(); ++i) {
@@ -121,7 +121,7 @@ Ticks linear_ticks(double low, double high, int at_most) {
   while (count(span) > at_most) {
     const Step larger = next(step);
     const Span fewer = span_of(low, high, larger);
-    // A single number is no scale: some of those of the smaller step instead.
+    // A single number does not define a scale. Use some numbers of the smaller step instead.
     if (count(fewer) < 2) {
       every = std::ceil(count(span) / std::max(2, at_most));
       break;
@@ -167,7 +167,7 @@ Ticks log_ticks(double low, double high, int at_most) {
 
 AxisRange drawable(AxisRange interval) {
   auto [low, high] = interval;
-  // Beyond these the steps between ticks are infinite, or lose their digits.
+  // Beyond these values the steps between ticks are infinite or lose their digits.
   constexpr double least = 1e-280, most = 1e280;
   if (!std::isfinite(low) || !std::isfinite(high)) return {0.0, 1.0};
   if (low > high) std::swap(low, high);
@@ -181,7 +181,7 @@ AxisRange drawable(AxisRange interval) {
 
 double Axis::fraction(double value) const {
   if (!log) return (value - range.low) / (range.high - range.low);
-  // A value far beyond the axis keeps a finite place.
+  // Limited, so that a value far beyond the axis has a finite position.
   return std::log(std::min(value / range.low, 1e300)) / std::log(range.high / range.low);
 }
 

@@ -25,10 +25,10 @@ std::string number_of(const BarChart::Bar& bar) {
   return readable_number(bar.value, 3);
 }
 
-// Columns of the page: labels, numbers of negative bars, bars, numbers of positive ones, notes.
+// Columns of the chart: labels, numbers of negative bars, bars, numbers of positive bars, notes.
 struct BarLayout {
   double label_width = 0.0;
-  double from = 0.0, to = 0.0;  // of the bars
+  double from = 0.0, to = 0.0;  // range of the bars
   double note_x = 0.0;
   AxisRange range{0.0, 0.0};
 
@@ -80,7 +80,7 @@ void draw_bar(Canvas& canvas, const BarChart::Bar& bar, const BarLayout& layout,
   canvas.text(fitted.lines.front(), {layout.note_x, middle}, fitted.style);
 }
 
-// The bars in words, for those who do not see them.
+// Text alternative of the bars for screen readers.
 std::string bars_in_words(const BarChart& chart) {
   std::string words = chart.title + " (" + chart.x_label + ")";
   for (const BarChart::Bar& bar : chart.bars) {

@@ -35,8 +35,8 @@ void set_colour(cairo_t* context, const Rgb& colour, double opacity) {
   cairo_set_source_rgba(context, colour.red, colour.green, colour.blue, opacity);
 }
 
-// An archive or wheel carries its fonts with a configuration that names no others, so that pictures
-// have letters on a machine without fonts. Elsewhere the machine's configuration holds.
+// Uses the fonts of an archive or wheel, which contain a font configuration, so that pictures have
+// letters on a machine without fonts. Other installations use the machine's configuration.
 void use_bundled_fonts() {
   const std::filesystem::path folder = own_file().parent_path();
   for (const std::filesystem::path& prefix : {folder, folder / ".."}) {
@@ -53,8 +53,8 @@ void use_bundled_fonts() {
   }
 }
 
-// Fixed, so that the defaults of a user's font configuration change no bits. (Rules that force a
-// rendering on programs still can.)
+// Sets all font options, so that the defaults of a user's font configuration do not change the
+// result. (Rules that force a rendering on programs still can.)
 void set_font(cairo_t* context, const TextStyle& style) {
   [[maybe_unused]] static const bool has_fonts = (use_bundled_fonts(), true);
   const CairoOwner<cairo_font_options_t> options(cairo_font_options_create());
@@ -78,7 +78,7 @@ bool is_on_file(cairo_t* context) {
   return cairo_surface_get_type(cairo_get_target(context)) != CAIRO_SURFACE_TYPE_IMAGE;
 }
 
-// Files hold lines to an eighth of a point, in half of the bytes that cairo would write.
+// Files store coordinates rounded to an eighth of a point, which halves their size.
 void trace_path(cairo_t* context, std::span<const PagePoint> points) {
   const bool rounds = is_on_file(context);
   const auto placed = [&](double x) { return rounds ? std::round(8.0 * x) / 8.0 : x; };
@@ -118,7 +118,8 @@ CairoOwner<cairo_surface_t> surface_of(int width, int height, std::span<const ui
   return cells;
 }
 
-// cairo numbers surfaces and images through the life of the process; here from 1 in every document.
+// Renumbers surfaces and images from 1 in every document: cairo numbers them throughout the
+// process.
 std::string with_own_numbers(const std::string& svg) {
   std::map<std::string, size_t> numbers;
   std::string result;
@@ -140,7 +141,7 @@ std::string with_own_numbers(const std::string& svg) {
 
 constexpr double capital_height = 0.729;  // of DejaVu Sans, in ems
 
-// An element of SVG, as wide as in the font that it was laid out for.
+// An SVG text element, with the width of the font used for the layout.
 std::string text_element(const std::string& clean, const PagePoint& at, const TextStyle& style,
                          double width) {
   const auto [red, green, blue] = rgb_bytes(style.colour);
@@ -159,7 +160,7 @@ std::string text_element(const std::string& clean, const PagePoint& at, const Te
          xml_text(clean) + "</text>\n";
 }
 
-// Before the end of the root element.
+// Inserts elements before the end of the root element.
 std::string with_text(std::string svg, const std::string& elements) {
   const size_t end = svg.rfind("</svg>");
   return end == std::string::npos ? svg : svg.insert(end, elements);
@@ -175,9 +176,9 @@ double text_width(const std::string& text, const TextStyle& style) {
 }
 
 struct Canvas::Page {
-  std::string bytes;  // of a file; outlives the surface that writes to it
+  std::string bytes;  // of a file; must outlive the surface that writes to it
   Letters letters = Letters::outlines;
-  std::string text_elements = {};  // of an SVG page whose letters are text, above all else
+  std::string text_elements = {};  // texts of an SVG page, above all other elements
   CairoOwner<cairo_surface_t> surface;
   CairoOwner<cairo_t> context;
 
@@ -257,7 +258,7 @@ void Canvas::discs(std::span<const PagePoint> centres, double radius, const Rgb&
     }
     return;
   }
-  // Lines of no length with round ends: a fifth of the bytes of circles in a file.
+  // Lines of zero length with round ends: a fifth of the bytes of circles in a file.
   cairo_new_path(context);
   for (const PagePoint& centre : centres) {
     const double x = std::round(8.0 * centre.x) / 8.0, y = std::round(8.0 * centre.y) / 8.0;

@@ -1,4 +1,4 @@
-// A page to draw on with cairo: the same calls make pixels, SVG and PDF.
+// A page for drawing with cairo: the same calls produce pixels, SVG or PDF.
 #pragma once
 
 #include <array>
@@ -51,7 +51,7 @@ struct Stroke {
   std::vector<double> dashes = {};  // lengths on, off, on, …; empty: solid
 };
 
-// Which point of a text is put at the given position.
+// Point of a text that is placed at the given position.
 enum class TextAlign { left, centre, right };
 enum class TextLevel { baseline, middle };  // middle: of capital letters
 
@@ -61,25 +61,26 @@ struct TextStyle {
   bool bold = false;
   TextAlign align = TextAlign::left;
   TextLevel level = TextLevel::baseline;
-  double turn_rad = 0.0;  // anticlockwise as seen
+  double turn_rad = 0.0;  // counter-clockwise
 };
 inline constexpr double quarter_turn_rad = std::numbers::pi / 2.0;
 
-// The advance of `text` in DejaVu Sans, in points; the same on every canvas. `text` is cleaned.
+// Width of `text` in DejaVu Sans, in points; equal on every canvas. `text` is cleaned.
 double text_width(const std::string& text, const TextStyle& style);
 
-// The metadata of a PDF file.
+// Metadata of a PDF file.
 struct PdfText {
   std::string title, subject, program;
 };
 
-// Drawing outside the page is clipped. NumericalError if cairo fails (out of memory).
+// A page. Drawing outside the page is clipped. Throws NumericalError if cairo fails (out of
+// memory).
 class Canvas {
  public:
   // A white page of pixels, `scale` pixels per point.
   static Canvas of_pixels(double width, double height, double scale);
-  // White pages of vectors, whose letters stay text; those of an SVG page as outlines where it is
-  // to look the same on machines without the font.
+  // White vector pages. PDF letters are text; SVG letters can be outlines, which look equal on
+  // machines without the font.
   enum class Letters { text, outlines };
   static Canvas of_svg(double width, double height, Letters letters = Letters::outlines);
   static Canvas of_pdf(double width, double height, const PdfText& text);
@@ -87,6 +88,7 @@ class Canvas {
   Canvas& operator=(Canvas&&) noexcept;
   ~Canvas();
 
+  // Coordinates and lengths of the drawing functions are in points.
   void fill(const PageBox& box, const Rgb& colour, double opacity = 1.0);
   void fill(std::span<const PagePoint> polygon, const Rgb& colour, double opacity = 1.0);
   void disc(const PagePoint& centre, double radius, const Rgb& colour);
@@ -96,10 +98,11 @@ class Canvas {
   void outline(const PageBox& box, const Stroke& stroke);
   // `text` is cleaned.
   void text(const std::string& text, const PagePoint& at, const TextStyle& style);
-  // Pixels of 0xAARRGGBB without premultiplication, row 0 at the top of `box`, in sharp cells.
+  // Draws pixels 0xAARRGGBB without premultiplied alpha as sharp cells; row 0 is at the top of
+  // `box`.
   void image(const PageBox& box, int width, int height, std::span<const uint32_t> argb);
 
-  // Draws with clipping to `box`.
+  // Calls draw() with clipping to `box`.
   template <class Draw>
   void clipped(const PageBox& box, const Draw& draw) {
     begin_clip(box);
@@ -107,7 +110,7 @@ class Canvas {
     end_clip();
   }
 
-  // The result, once: of a page of pixels, or the bytes of an SVG or PDF file. The canvas can then
+  // Return the result: the pixels, or the bytes of an SVG or PDF file. Afterwards the canvas can
   // only be destroyed.
   Picture finish_pixels();
   std::string finish_file();

@@ -5,7 +5,7 @@
 namespace photorque {
 namespace {
 
-// Linear sRGB to CIE XYZ, D65.
+// Matrix from linear sRGB to CIE XYZ, D65.
 Eigen::Matrix3d xyz_from_linear() {
   return (Eigen::Matrix3d() << 0.4124564, 0.3575761, 0.1804375,  //
           0.2126729, 0.7151522, 0.0721750,                       //
@@ -13,7 +13,7 @@ Eigen::Matrix3d xyz_from_linear() {
       .finished();
 }
 
-// White is the matrix times (1, 1, 1), so that greys have exactly a* = b* = 0.
+// White point: the matrix times (1, 1, 1), so that greys have exactly a* = b* = 0.
 Eigen::Vector3d white_xyz() {
   return xyz_from_linear() * Eigen::Vector3d::Ones();
 }
@@ -53,8 +53,8 @@ Rgb rgb_from_msh(const Msh& msh) {
                        chroma * std::sin(msh.hue_rad)});
 }
 
-// The hue that the neutral middle takes on the side of `end`, so that the lengths of the steps in
-// hue stay even (Moreland's AdjustHue). Hues turn away from green, through which no map should go.
+// Hue of the neutral middle on the side of `end`, such that steps in hue have equal lengths
+// (Moreland's AdjustHue). Hues turn away from green, which no map should pass through.
 double hue_at_middle(const Msh& end, double middle_length) {
   const double turn = end.angle_rad *
                       std::sqrt(middle_length * middle_length - end.length * end.length) /
@@ -141,7 +141,7 @@ ColourScale colour_scale(double smallest, double largest, bool signed_values) {
     const double reach = extent > 0.0 ? extent : 1.0;
     return {-reach, reach, cool_warm()};
   }
-  // Differences of this size are rounding, not structure.
+  // Differences of this size are rounding errors.
   const bool constant =
       largest - smallest <= 1e-9 * std::max(std::abs(smallest), std::abs(largest));
   if (constant && largest == 0.0) return {0.0, 1.0, viridis()};

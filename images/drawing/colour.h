@@ -1,5 +1,5 @@
-// Colours as displays show them and as eyes see them, and colour maps for scalar fields:
-// perceptually even, and readable by colour-blind people.
+// Colours in display and perceptual coordinates, and colour maps for scalar fields that are
+// perceptually uniform and readable for colour-blind readers.
 #pragma once
 
 #include <array>
@@ -23,7 +23,8 @@ struct Lab {
   double b = 0.0;
 };
 
-// Proportional to light, as averaging needs it, from the encoded value; and back. Both in [0, 1].
+// Conversion between the encoded value and the linear value, which is proportional to light and
+// suitable for averages. Both in [0, 1].
 double linear_from_encoded(double encoded);
 double encoded_from_linear(double linear);
 
@@ -32,9 +33,9 @@ Lab lab_from_rgb(const Rgb& colour);
 // Colours outside of sRGB are clipped per component.
 Rgb rgb_from_lab(const Lab& colour);
 
-// Each component rounded to 0 … 255.
+// Components rounded to 0 … 255.
 std::array<uint8_t, 3> rgb_bytes(const Rgb& colour);
-// 0xRRGGBB.
+// Colour 0xRRGGBB.
 constexpr Rgb rgb_from_hex(uint32_t hex) {
   return {((hex >> 16) & 0xFF) / 255.0, ((hex >> 8) & 0xFF) / 255.0, (hex & 0xFF) / 255.0};
 }
@@ -42,22 +43,22 @@ constexpr Rgb rgb_from_hex(uint32_t hex) {
 // 256 colours for the fractions 0 to 1.
 struct ColourMap {
   std::array<Rgb, 256> colours;
-  // The colour at `fraction`, clamped to [0, 1].
+  // Colour at `fraction`, clamped to [0, 1].
   const Rgb& operator()(double fraction) const;
 };
 
-// Dark violet to yellow; lightness rises evenly. For quantities that do not change sign.
+// Dark violet to yellow with evenly rising lightness, for quantities that do not change sign.
 // Source: viridis, N. Smith and S. van der Walt (2015, CC0), 16 of its 256 colours interpolated in
 // CIELAB; within ΔE*ab = 1.2 of the published table.
 ColourMap viridis();
 
-// Blue over light grey (at 1/2) to red; lightness rises evenly to the middle and falls again. For
-// signed quantities.
+// Blue over light grey (at 1/2) to red, for signed quantities. Lightness rises evenly to the middle
+// and falls evenly beyond.
 // Source: K. Moreland, "Diverging Color Maps for Scientific Visualization" (ISVC 2009): its
 // construction in the polar form of CIELAB, with its pair of cool and warm ends.
 ColourMap cool_warm();
 
-// Which colour a value has: `low` at the start of the map, `high` at its end; low < high.
+// Colours of values from `low` (start of the map) to `high` (end); low < high.
 struct ColourScale {
   double low = 0.0;
   double high = 1.0;
@@ -65,13 +66,13 @@ struct ColourScale {
   const Rgb& operator()(double value) const { return map((value - low) / (high - low)); }
 };
 
-// The scale for values from `smallest` to `largest`. Unsigned: from zero, unless all values lie in
-// the upper half of [0, largest], where a map from zero would hide differences. Signed: blue to red
-// with zero in the middle, unless all lie on one side of zero and far from it. Constant values get
-// a scale that shows them as such.
+// Scale for values from `smallest` to `largest`. Unsigned: from zero, unless all values are in the
+// upper half of [0, largest], where a scale from zero would hide differences. Signed: blue to red
+// with zero in the middle, unless all values are on one side of zero and far from it. Constant
+// values get a scale that shows them as constant.
 ColourScale colour_scale(double smallest, double largest, bool signed_values);
 
-// The scale for the finite values of a map; [0, 1] or [−1, 1] if there are none.
+// Scale for the finite values of a map; [0, 1] or [−1, 1] if there are none.
 ColourScale colour_scale(const Map& map);
 
 }  // namespace photorque

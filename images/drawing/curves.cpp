@@ -17,7 +17,8 @@ bool drawable_point(const PagePoint& point) {
   return std::isfinite(point.x) && std::isfinite(point.y);
 }
 
-// The curve's unbroken pieces on the page; values that cannot be shown break it.
+// Continuous pieces of the curve on the page, separated by values that cannot be shown. `errors`
+// shifts the curve by this multiple of its errors.
 std::vector<std::vector<PagePoint>> pieces_of(const ChartPanel& panel, const Plot::Curve& curve,
                                               double errors) {
   std::vector<std::vector<PagePoint>> pieces(1);
@@ -38,7 +39,7 @@ void draw_band(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve
                const Rgb& colour) {
   const auto upper = pieces_of(panel, curve, 1.0);
   const auto lower = pieces_of(panel, curve, -1.0);
-  if (upper.size() != lower.size()) return;  // one side leaves a logarithmic axis
+  if (upper.size() != lower.size()) return;  // one side exceeds a logarithmic axis
   for (size_t i = 0; i < upper.size(); ++i) {
     std::vector<PagePoint> polygon = thinned(upper[i], panel.resolution);
     const std::vector<PagePoint> back = thinned(lower[i], panel.resolution);
@@ -55,7 +56,7 @@ void draw_error_bar(Canvas& canvas, const PagePoint& low, const PagePoint& high,
   canvas.line({high.x - 2.0, high.y}, {high.x + 2.0, high.y}, stroke);
 }
 
-// One marker per cell of the resolution: those that would cover an earlier one change nothing.
+// Draws at most one marker per cell of the resolution, because others would cover an earlier one.
 void draw_markers(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve,
                   const Rgb& colour) {
   std::set<std::pair<int64_t, int64_t>> taken;
@@ -73,7 +74,7 @@ void draw_markers(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& cu
   }
 }
 
-// Points between gaps are drawn as dots, runs of them at once.
+// Isolated points between gaps are drawn as dots, runs of them together.
 void draw_lines(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve,
                 const Stroke& stroke) {
   std::vector<PagePoint> lone;
@@ -93,7 +94,7 @@ void draw_lines(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curv
   draw_lone();
 }
 
-// Gaps do not matter.
+// Draws a curve as dots, which need no continuous pieces.
 void draw_dots(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve,
                const Stroke& stroke) {
   std::vector<PagePoint> points;
@@ -103,7 +104,7 @@ void draw_dots(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve
   canvas.discs(thinned(points, panel.resolution), stroke.width, stroke.colour);
 }
 
-// Many bars in even steps have no gaps: they are a histogram, or stand on each other.
+// Whether bars are drawn without gaps: many bars at equal steps.
 bool is_histogram(const Plot::Curve& curve) {
   constexpr size_t many = 30;
   return curve.x.size() >= many;
@@ -112,7 +113,7 @@ double half_width_of(const Plot::Curve& curve) {
   return is_histogram(curve) ? 0.5 * (curve.x[1] - curve.x[0]) : bar_half_width;
 }
 
-// The bar over the i-th point; nothing for values that cannot be shown.
+// The bar at the i-th point; empty for values that cannot be shown.
 std::optional<PageBox> bar_of(const ChartPanel& panel, const Plot::Curve& curve, size_t i) {
   const double from = is_vertical_bar(curve) ? curve.y[0] : panel.y.log ? panel.y.range.low : 0.0;
   if (is_vertical_bar(curve)) i = 1;
@@ -128,7 +129,7 @@ void draw_bars(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve
   for (size_t i = 0; i < curve.x.size(); ++i) {
     auto bar = bar_of(panel, curve, i);
     if (!bar) continue;
-    // A hair wider than the step: no seams between bars that touch.
+    // Slightly wider than the step, so that no seams appear between adjacent bars.
     if (is_histogram(curve)) bar->width += 0.4;
     canvas.fill(*bar, colour);
   }
@@ -152,7 +153,7 @@ bool meets(const PageBox& box, const PagePoint& a, const PagePoint& b) {
   return clip(a.x, b.x - a.x, box.x, box.right()) && clip(a.y, b.y - a.y, box.y, box.bottom());
 }
 
-// The value of a hanging bar, above it.
+// Draws the value of each vertical bar above it.
 void draw_bar_numbers(Canvas& canvas, const ChartPanel& panel) {
   TextStyle style = tick_style;
   style.align = TextAlign::centre;
@@ -161,7 +162,7 @@ void draw_bar_numbers(Canvas& canvas, const ChartPanel& panel) {
     const auto bar = bar_of(panel, curve, 1);
     if (!bar) continue;
     double size = curve.y[1] - curve.y[0];
-    // Rounding of what is nothing.
+    // Values within rounding errors are zero.
     if (std::abs(size) < 1e-9 * std::max(std::abs(curve.y[0]), std::abs(curve.y[1]))) size = 0.0;
     std::string text = readable_number(std::abs(size), 3);
     if (size < 0.0) text = "−" + text;
@@ -189,7 +190,7 @@ bool covers_a_curve(const ChartPanel& panel, const PageBox& box) {
   return false;
 }
 
-// The sample beside a curve's name in the legend; `left` is the middle of its left side.
+// Draws the sample beside a curve's name in the legend; `left` is the middle of its left side.
 void draw_sample(Canvas& canvas, const Plot::Curve& curve, const Stroke& stroke,
                  const PagePoint& left) {
   const double middle_x = left.x + 0.5 * legend_sample;
@@ -350,7 +351,7 @@ void draw_legend(Canvas& canvas, const ChartPanel& panel, const Legend& legend,
   const double room = column_width - 0.5 * legend_padding - before_text;
   TextStyle style = tick_style;
   style.level = TextLevel::middle;
-  // All as small as the longest must be.
+  // All labels use the size of the longest.
   for (const size_t index : legend.curves) {
     style.size = std::min(style.size,
                           fitted_text(panel.curves[index].label, room, style, 8.0, 1).style.size);

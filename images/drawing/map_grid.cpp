@@ -38,15 +38,15 @@ uint32_t opaque(const Rgb& colour) {
   return 0xFF000000u | uint32_t{red} << 16 | uint32_t{green} << 8 | uint32_t{blue};
 }
 
-// The value of a bin, the nearest one for places outside; NaN where there is none.
+// Value of a bin, outside of the map of the nearest one; NaN if it has none.
 double value_at(const Map& map, double x, double y) {
   const int column = std::clamp(static_cast<int>(x), 0, map.width - 1);
   const int row = std::clamp(static_cast<int>(y), 0, map.height - 1);
   return map.value[static_cast<size_t>(row) * map.width + column];
 }
 
-// The weights of nodes first − 1 … first + 2 of `count` in the cubic of Catmull and Rom at t in
-// [0, 1] from `first` on; beyond the ends the field goes on straight.
+// Weights of the nodes first − 1 … first + 2 (of `count`) in the Catmull-Rom cubic at t in [0, 1]
+// after node `first`; the field is extended linearly beyond the ends.
 std::array<double, 4> cubic_weights(double first, int count, double t) {
   std::array<double, 4> weight = {0.5 * t * (t * (2.0 - t) - 1.0),
                                   0.5 * (t * t * (3.0 * t - 5.0) + 2.0),
@@ -58,9 +58,9 @@ std::array<double, 4> cubic_weights(double first, int count, double t) {
   return weight;
 }
 
-// The field of a smooth map at x and y in nodes from its first: the cubic through four nodes a
-// side, and a value nearby for a node that has none. NaN where the four nodes
-// around, weighed by how near they are, are missing by more than half.
+// Value of a smooth map at x and y, in nodes from its first: the cubic through four nodes per side.
+// A node without value uses a neighbouring value. NaN if, of the four nodes around, those without
+// value have more than half of the bilinear weight.
 double smooth_value(const Map& map, double x, double y) {
   const double left = std::floor(x), below = std::floor(y), s = x - left, t = y - below;
   double there = 0.0, some = std::numeric_limits<double>::quiet_NaN();
@@ -86,7 +86,7 @@ double smooth_value(const Map& map, double x, double y) {
   return sum;
 }
 
-// Whether the values of a smooth map fill the circle through its outermost nodes.
+// Whether the values of a smooth map fill exactly the circle through its outermost nodes.
 bool is_round(const Map& map) {
   if (!map.smooth || map.width != map.height || map.width < 8) return false;
   const double middle = 0.5 * (map.width - 1);
@@ -101,12 +101,12 @@ bool is_round(const Map& map) {
   return true;
 }
 
-// A round map whose field goes on straight along the radius beyond the rim, for interpolation
-// there.
+// A round map extended linearly along the radius beyond the rim, for interpolation there.
 Map beyond_rim(Map map) {
   const double middle_x = 0.5 * (map.width - 1), middle_y = 0.5 * (map.height - 1);
   const double rim = std::min(middle_x, middle_y);
-  constexpr double step = 1.5;  // nodes: all four around a place so far inside have values
+  // In nodes: so far inside the rim all four surrounding nodes have values.
+  constexpr double step = 1.5;
   if (rim < 2.0 * step) return map;
   const auto extend = [&](const std::vector<double>& values) {
     if (values.empty()) return values;
@@ -134,7 +134,7 @@ Map beyond_rim(Map map) {
   return map;
 }
 
-// The part of a pixel within the rim of a round map, from 0 to 1; 1 for other maps.
+// Fraction of a pixel within the rim of a round map, 0 to 1; 1 for other maps.
 double part_within_rim(bool round, int column, int row, int columns, int rows) {
   if (!round) return 1.0;
   const double x = (2.0 * (column + 0.5) / columns - 1.0), y = 2.0 * (row + 0.5) / rows - 1.0;
@@ -146,7 +146,8 @@ Ticks contour_levels(const ColourScale& scale) {
   return linear_ticks(scale.low, scale.high, most_levels);
 }
 
-// A smooth field with a thin line, as dark as it is near, wherever it passes one of even levels.
+// A smooth field with thin contour lines at equal steps; a pixel is darker the nearer it is to a
+// line.
 class SmoothField {
  public:
   SmoothField(const Map& stored, const ColourScale& scale, int columns, int rows)
@@ -202,7 +203,7 @@ std::vector<uint32_t> smooth_pixels(const Map& map, const ColourScale& scale, in
   return pixels;
 }
 
-// Paler than any colour of a signed scale, and darker than its middle.
+// Paler than the colours of a signed scale, darker than its middle.
 constexpr Rgb unsure_grey = {0.74, 0.74, 0.74};
 
 std::vector<uint32_t> plain_pixels(const Map& map, const ColourScale& scale, int columns,
@@ -219,7 +220,7 @@ std::vector<uint32_t> plain_pixels(const Map& map, const ColourScale& scale, int
   return pixels;
 }
 
-// Where a value is within two standard errors of zero.
+// Area in which a value is within two standard errors of zero.
 class UnsureArea {
  public:
   explicit UnsureArea(const Map& map) : map_(is_round(map) ? beyond_rim(map) : map), errors_(map_) {
@@ -258,7 +259,7 @@ std::vector<ContourLabel> contour_labels(const Map& map, const ColourScale& scal
   const SmoothField field(map, scale, columns, rows);
   const std::optional<UnsureArea> unsure = unsure_area(map);
   const auto edge = static_cast<int>(0.6 * room);
-  // Where a whole label has values around it.
+  // Whether a whole label has values around it.
   const auto is_inside = [&](int column, int row) {
     for (const int i : {-edge, edge}) {
       for (const int j : {-edge, 0, edge}) {
@@ -282,7 +283,7 @@ std::vector<ContourLabel> contour_labels(const Map& map, const ColourScale& scal
   for (size_t l = 0; l < levels.values.size(); ++l) {
     const double level = levels.values[l];
     if ((first + static_cast<int64_t>(l)) % 2 != 0 || level == 0.0) continue;
-    // The flattest part of the line gives the label most room.
+    // The flattest part of the line has the most room for the label.
     std::optional<ContourLabel> best;
     double least_slope = std::numeric_limits<double>::infinity();
     for (int row = edge; row + edge < rows; row += 2) {
@@ -296,7 +297,7 @@ std::vector<ContourLabel> contour_labels(const Map& map, const ColourScale& scal
         if (distance_to_others(column, row) < 2.0 * room) continue;
         if (unsure && unsure->at(column, row, columns, rows)) continue;
         least_slope = slope;
-        // Along the line, the letters upright.
+        // Angle along the line with upright letters.
         double turn = std::atan2(right, down);
         if (turn > 0.5 * std::numbers::pi) turn -= std::numbers::pi;
         if (turn <= -0.5 * std::numbers::pi) turn += std::numbers::pi;

@@ -15,7 +15,7 @@ constexpr double shortest_colour_bar = 150.0;
 constexpr double narrowest_page = 400.0;
 
 struct MapLayout {
-  PageBox grid;  // whole points, so that cells meet pixels exactly
+  PageBox grid;  // in whole points, so that cells match pixels exactly
   Axis x, y;
   ColourBar bar;
   double bar_height = 0.0;
@@ -36,7 +36,7 @@ PageBox grid_size(const Map& map, double scale = 1.0) {
   return {0.0, 0.0, std::round(width), std::round(width / ratio)};
 }
 
-// Whether the bins are things that are counted, few enough to carry their numbers.
+// Whether the bins are numbered cells, few enough to show their values.
 bool are_cells(const Map& map) {
   constexpr int most_a_side = 16;
   return map.x_label.starts_with("cell ") && map.x_low == 0.0 && map.x_high == map.width &&
@@ -44,7 +44,7 @@ bool are_cells(const Map& map) {
          map.height <= most_a_side;
 }
 
-// Counts from 0, as the numbers of cells do, at the middles of the cells.
+// Numbers of the cells from 0, at their centres.
 Ticks cell_ticks(int cells) {
   Ticks ticks;
   for (int i = 0; i < cells; ++i) {
@@ -57,7 +57,7 @@ Ticks cell_ticks(int cells) {
 MapLayout map_layout(const Map& map, const Provenance& provenance, PictureStyle style) {
   MapLayout layout;
   layout.grid = grid_size(map, page_scale(style));
-  // A smooth map is drawn between its nodes, which are in the middles of bins.
+  // A smooth map is drawn between its nodes, which are at the centres of bins.
   const double half_x = map.smooth ? 0.5 * (map.x_high - map.x_low) / map.width : 0.0;
   const double half_y = map.smooth ? 0.5 * (map.y_high - map.y_low) / map.height : 0.0;
   layout.x = horizontal_axis({map.x_low + half_x, map.x_high - half_x}, false, map.x_label,
@@ -83,7 +83,7 @@ MapLayout map_layout(const Map& map, const Provenance& provenance, PictureStyle 
   return layout;
 }
 
-// The value of every cell in it, dark on light and light on dark.
+// Draws the value of every cell in it, dark on light or light on dark.
 void draw_cell_numbers(Canvas& canvas, const Map& map, const ColourScale& scale,
                        const PageBox& grid) {
   const double width = grid.width / map.width, height = grid.height / map.height;
@@ -115,7 +115,7 @@ double root_mean_square(const std::vector<double>& values) {
   return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
 }
 
-// Shows through wherever the map has no value.
+// Draws hatching, which is visible where the map has no value.
 void draw_hatching(Canvas& canvas, const PageBox& box) {
   canvas.clipped(box, [&] {
     for (double x = box.x - box.height; x < box.right(); x += 6.0) {
@@ -149,7 +149,7 @@ double page_height(const MapLayout& layout) {
   return std::ceil(layout.text.page_height(layout.body_height));
 }
 
-// Numbers on contour lines, on a ground of the line's colour.
+// Draws numbers on contour lines, on a background of the line's colour.
 void draw_contour_labels(Canvas& canvas, const Map& map, const MapLayout& layout, int columns,
                          int rows) {
   constexpr double size = 8.5;
@@ -174,13 +174,13 @@ void draw_contour_labels(Canvas& canvas, const Map& map, const MapLayout& layout
   }
 }
 
-// The grid as an image of so many pixels, and all around it.
+// Draws the grid as an image of `columns` × `rows` pixels, with axes and colour bar.
 void draw_map(Canvas& canvas, const Map& map, const MapLayout& layout, int columns, int rows) {
   if (!map.smooth) draw_hatching(canvas, layout.grid);
   canvas.image(layout.grid, columns, rows, map_pixels(map, layout.bar.scale, columns, rows));
   if (map.smooth) draw_contour_labels(canvas, map, layout, columns, rows);
   if (are_cells(map)) draw_cell_numbers(canvas, map, layout.bar.scale, layout.grid);
-  // Around the cells, not over them.
+  // The outline is around the cells, not on them.
   canvas.outline(
       {layout.grid.x - 0.4, layout.grid.y - 0.4, layout.grid.width + 0.8, layout.grid.height + 0.8},
       {ink, 0.8});
@@ -190,7 +190,7 @@ void draw_map(Canvas& canvas, const Map& map, const MapLayout& layout, int colum
   draw_page_text(canvas, layout.text, layout.body_height);
 }
 
-// On a page of vectors.
+// The map as a vector page.
 std::string map_file(Canvas canvas, const Map& map, const MapLayout& layout) {
   constexpr double per_point = 3.0;
   draw_map(canvas, map, layout, static_cast<int>(per_point * layout.grid.width),
@@ -239,7 +239,7 @@ std::string map_html(const Map& map) {
   // The bar's width does not depend on its height.
   const double bar_width = colour_bar(scale, map.unit, grid.height).width();
   Axis x, y;
-  // Ticks of the axis take room that they themselves depend on: two rounds are enough.
+  // The width of the tick labels depends on the ticks and vice versa: two iterations suffice.
   for (int round = 0; round < 2; ++round) {
     x = horizontal_axis({map.x_low, map.x_high}, false, map.x_label, grid.width);
     y = vertical_axis({map.y_low, map.y_high}, false, map.y_label, grid.height);
@@ -286,7 +286,7 @@ std::string map_caption(const Map& map) {
       map.smooth ? "interpolated, contour lines at even steps"
                  : std::to_string(map.width) + " × " + std::to_string(map.height) + " bins";
   if (count == 0) return "no values · " + bins;
-  // Nodes of a smooth field need not stand for equal parts of it.
+  // Nodes of a smooth field need not represent equal areas, so that no mean is stated.
   const std::string mean = map.smooth ? "" : "mean " + readable_number(sum / weights) + " · ";
   std::string caption = "min " + readable_number(smallest) + " · " + mean + "max " +
                         readable_number(largest) + (map.unit.empty() ? "" : " " + map.unit) +

@@ -22,7 +22,7 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
-// The longest beginning of `text`, at least one character, that is not wider than `width`.
+// Longest beginning of `text`, at least one character, that is at most `width` wide.
 std::string longest_fitting_prefix(const std::string& text, double width, const TextStyle& style) {
   std::string beginning;
   std::string_view rest = text;

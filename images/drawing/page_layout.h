@@ -1,4 +1,4 @@
-// The frame of a picture: title, warnings, caption, colour bar.
+// Layout around a picture: title, warnings, caption, colour bar.
 #pragma once
 
 #include <string>
@@ -23,26 +23,26 @@ struct TextBlock {
 };
 
 // `text` broken at spaces into at most `max_lines` lines of at most `width` points. If it does not
-// fit, the letters shrink down to `smallest_size`; if it still does not, it ends in "…".
+// fit, the letters shrink to `smallest_size`; if this is not sufficient, the text is cut with "…".
 TextBlock fitted_text(const std::string& text, double width, TextStyle style, double smallest_size,
                       int max_lines);
 void draw_text(Canvas& canvas, const TextBlock& block, const PagePoint& top_left);
 
-// The texts of a page; the body stands between title and caption.
+// Texts of a page; the body is between title and caption.
 struct PageText {
   TextBlock title;
-  TextBlock warnings;  // beneath the title; no lines where all is well
+  TextBlock warnings;  // below the title; empty without warnings
   TextBlock caption;
   double body_top() const;
   double page_height(double body_height) const;
 };
-// Title and caption as the style has them; warnings of the provenance always.
+// Title and caption depend on the style; warnings of the provenance are always included.
 PageText page_text(const std::string& title, const std::string& caption,
                    const Provenance& provenance, double page_width,
                    PictureStyle style = PictureStyle::page);
 void draw_page_text(Canvas& canvas, const PageText& text, double body_height);
 
-// An upright colour bar with numbers on its right and the unit above it.
+// A vertical colour bar with numbers on its right and the unit above it.
 struct ColourBar {
   ColourScale scale;
   Axis axis;
@@ -51,7 +51,7 @@ struct ColourBar {
 };
 inline constexpr double colour_bar_unit_height = 18.0;  // needed above the bar
 ColourBar colour_bar(const ColourScale& scale, const std::string& unit, double height);
-// `bar` has the height given above; `top_left` is that of the coloured part.
+// `height` must be that of colour_bar(); `top_left` is the corner of the coloured part.
 void draw_colour_bar(Canvas& canvas, const ColourBar& bar, const PagePoint& top_left,
                      double height);
 

@@ -24,15 +24,15 @@ struct Extent {
   }
 };
 
-// With a margin on both sides.
+// Range with a margin on both sides.
 AxisRange padded(const Extent& extent, bool log, double margin) {
   if (extent.low > extent.high) return log ? AxisRange{1.0, 10.0} : AxisRange{0.0, 1.0};
   if (log) {
-    // Within these the ratio of two values is a finite number.
+    // Within these limits the ratio of two values is finite.
     constexpr double least = 1e-150, most = 1e150;
     const double low = std::clamp(extent.low, least, most);
     const double high = std::clamp(extent.high, least, most);
-    // As of drawable(): values that differ by rounding alone are one value.
+    // As in drawable(), values that differ only by rounding count as equal.
     const bool is_constant = high <= (1.0 + 1e-9) * low;
     const double factor = is_constant ? std::sqrt(10.0) : std::pow(high / low, margin);
     return {low / factor, high * factor};
@@ -47,7 +47,7 @@ AxisRange x_range(const std::vector<Plot::Panel>& panels, bool log) {
   bool markers = false;
   for (const Plot::Panel& panel : panels) {
     for (const Plot::Curve& curve : panel.curves) {
-      // As much room beside the outer bars as between two that stand at 1, 2, …
+      // The space beside the outer bars equals that between two bars at 1, 2, …
       const double beside = !curve.bars           ? 0.0
                             : curve.x.size() < 30 ? 1.0 - bar_half_width
                                                   : 0.5 * (curve.x[1] - curve.x[0]);
@@ -85,9 +85,9 @@ AxisRange y_range(const Plot::Panel& panel) {
   const bool log = panel.y_log;
   Extent extent = curves_extent(panel);
   for (const double level : panel.levels) extent.include(level, log);
-  // Over bars that hang their sizes are written.
+  // The values of vertical bars are written above them.
   AxisRange range = padded(extent, log, has_names_under_bars(panel.curves) ? 0.1 : 0.06);
-  // A quantity that starts at zero stands on the axis.
+  // If the quantity starts at zero, the axis does too.
   if (extent.low == 0.0 && extent.high > 0.0) range.low = 0.0;
   return range;
 }
@@ -104,7 +104,7 @@ double usual_height(const std::vector<Plot::Panel>& panels, double scale) {
 
 constexpr double smallest_name = 7.5;  // points
 
-// The largest style in which every word of the names fits under its bar; nothing: none does.
+// Largest style in which every word of the names fits below its bar; empty if none does.
 std::optional<TextStyle> style_of_words(const std::vector<Plot::Curve>& curves, double room,
                                         TextStyle style) {
   double widest = 0.0;
@@ -117,7 +117,7 @@ std::optional<TextStyle> style_of_words(const std::vector<Plot::Curve>& curves, 
   return style.size >= smallest_name ? std::optional(style) : std::nullopt;
 }
 
-// The names under bars, each in the room of its bar; upright where words are wider than that.
+// Names below bars, within the width of the bar; rotated if words are wider.
 std::vector<TextBlock> names_of(const ChartPanel& panel) {
   if (!has_names_under_bars(panel.curves)) return {};
   TextStyle style = tick_style;
@@ -167,7 +167,7 @@ void draw_names(Canvas& canvas, const ChartPanel& panel) {
   }
 }
 
-// Puts the frames `legend_width` short of the right edge.
+// Places the frames; their right side leaves `legend_width` free.
 void place_frames(PlotLayout& layout, const PlotRoom& room, const Axis& x_axis,
                   double legend_width) {
   const double left = room.left + layout.axis_width;
@@ -194,14 +194,14 @@ void draw_grid(Canvas& canvas, const ChartPanel& panel) {
   }
 }
 
-// Without the grid's ink a signed quantity would hide where it is zero.
+// Draws the zero line of a signed quantity, which the light grid does not emphasise.
 void draw_zero_line(Canvas& canvas, const ChartPanel& panel) {
   if (panel.y.log || panel.y.range.low >= 0.0 || panel.y.range.high <= 0.0) return;
   const double y = panel.frame.bottom() - panel.frame.height * panel.y.fraction(0.0);
   canvas.line({panel.frame.x, y}, {panel.frame.right(), y}, {{0.6, 0.6, 0.6}, 0.9});
 }
 
-// The label stands at the top, or at the bottom where the legend covers the top.
+// Draws shaded intervals. The label is at the top, or at the bottom if the legend covers the top.
 void draw_shaded(Canvas& canvas, const ChartPanel& panel, const Plot& plot, bool with_label,
                  const PageBox& legend) {
   bool labelled = !with_label || plot.shaded_label.empty();
@@ -363,7 +363,7 @@ namespace {
 struct TimeUnit {
   std::string_view name;
   double seconds;
-  double shortest_axis_s;  // from which on the unit is used
+  double shortest_axis_s;  // shortest axis for this unit
 };
 constexpr TimeUnit long_units[] = {
     {"d", 86400.0, 259200.0}, {"h", 3600.0, 7200.0}, {"min", 60.0, 600.0}};
@@ -426,7 +426,7 @@ std::string pdf_of(const Plot& plot, const Provenance& provenance, const PdfText
 std::string plot_html(const Plot& of) {
   require_consistent(of);
   const Plot plot = with_readable_time_unit(of);
-  // Half of the last tick's label is beyond the frame.
+  // Half of the last tick's label extends beyond the frame.
   constexpr double half_label = 12.0;
   const PlotLayout layout = plot_layout(plot, {.left = 2.0,
                                                .right = html_chart_width - half_label,

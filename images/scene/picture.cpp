@@ -33,7 +33,7 @@ void require_consistent(const SceneView& view) {
   }
 }
 
-// The largest irradiance in view; nothing if no receiver is.
+// Largest irradiance in view; empty if no receiver is in view.
 std::optional<double> largest_irradiance_W_m2(const SceneView& view) {
   std::optional<double> largest;
   for (size_t i = 0; i < view.irradiance_W_m2.size(); ++i) {
@@ -45,7 +45,7 @@ std::optional<double> largest_irradiance_W_m2(const SceneView& view) {
   return largest;
 }
 
-// Axes that point away from the viewer are drawn first, so that nearer ones cover them.
+// Axes that point away from the viewer are drawn first, so that nearer axes cover them.
 void draw_triad(Canvas& canvas, const PagePoint& origin, const std::array<Vec3, 3>& axes_camera) {
   const std::array<Rgb, 3> colours = {rgb_from_hex(0xD55E00), rgb_from_hex(0x009E73),
                                       rgb_from_hex(0x0072B2)};
@@ -58,7 +58,7 @@ void draw_triad(Canvas& canvas, const PagePoint& origin, const std::array<Vec3, 
     canvas.line(origin, end, {{1.0, 1.0, 1.0}, 4.5, 0.7});
     canvas.line(origin, end, {colours[i], 2.4});
     canvas.disc(end, 2.4, colours[i]);
-    // Beside the end; an axis that points at the viewer has its letter at the upper right.
+    // The letter is beside the end; for an axis towards the viewer it is at the upper right.
     const double length = std::hypot(axis.x(), axis.y());
     const double right = length > 0.2 ? axis.x() / length : 0.7;
     const double up = length > 0.2 ? axis.y() / length : 0.7;

@@ -76,7 +76,7 @@ void draw_lamp(SceneView& view, const Pinhole& camera, const Screen& screen, con
 }
 
 void draw_ray(SceneView& view, const Screen& screen, const Vec3& from_m, const Vec3& to_m) {
-  // Only parts in front of the camera.
+  // Clips the ray to the part in front of the camera.
   const double nearest_m = 1e-3 * (to_m - from_m).norm();
   double begin = 0.0, end = 1.0;
   const double from_along = screen.along_m(from_m), to_along = screen.along_m(to_m);
@@ -99,7 +99,7 @@ void draw_ray(SceneView& view, const Screen& screen, const Vec3& from_m, const V
   const int half = view.oversampling / 2;
   for (int step = low; step <= high; ++step) {
     const double t = span == 0.0 ? 0.0 : (step + 0.5 - along_axis(a)) / span;
-    // In a perspective the inverse of the distance is even along a line on the picture.
+    // In a perspective view the inverse of the distance is linear along a line of the picture.
     const double along_m = 1.0 / ((1.0 - t) / a.along_m + t / b.along_m);
     const double middle = std::floor(across_axis(a) + t * (across_axis(b) - across_axis(a)));
     if (!(middle >= -half && middle < breadth + half)) continue;
@@ -110,7 +110,7 @@ void draw_ray(SceneView& view, const Screen& screen, const Vec3& from_m, const V
       const size_t sample = static_cast<size_t>(row) * screen.columns() + column;
       const double x = (column + 0.5 - 0.5 * screen.columns()) / screen.samples_per_slope();
       const double y = (row + 0.5 - 0.5 * screen.rows()) / screen.samples_per_slope();
-      // A ray ends on the surface that it meets: that one does not hide it.
+      // A tolerance, because a ray ends on the surface that it meets and must not be hidden by it.
       const double distance_m = along_m * std::sqrt(1.0 + x * x + y * y);
       if (0.999 * distance_m > view.depth_m[sample]) continue;
       view.ray[sample] = 1.0F - (1.0F - view.ray[sample]) * (1.0F - ray_opacity);

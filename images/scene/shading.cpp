@@ -8,15 +8,15 @@ constexpr float border_strength = 0.7F;
 constexpr float crease_strength = 0.5F;
 constexpr double edge_darkening = 0.62;
 constexpr Rgb edge_colour = {0.12, 0.12, 0.14};
-// As a fraction of the range of depths in view. A larger second difference is a step, not a curved
-// surface.
+// As a fraction of the range of depths in view. A larger second difference is a jump, a smaller one
+// may be a curved surface.
 constexpr float depth_step = 0.01F;
 
 bool hit(const SceneView& view, size_t sample) {
   return std::isfinite(view.depth_m[sample]);
 }
 
-// Between two neighbouring samples, both hit or one of them not.
+// Strength of an edge between two neighbouring samples, of which at most one hits nothing.
 float pair_strength(const SceneView& view, size_t a, size_t b) {
   const float crease_cosine = std::cos(25.0F * 0.01745329F);
   if (hit(view, a) != hit(view, b)) return outline_strength;
@@ -25,7 +25,7 @@ float pair_strength(const SceneView& view, size_t a, size_t b) {
   return view.normal_lab[a].dot(view.normal_lab[b]) < crease_cosine ? crease_strength : 0.0F;
 }
 
-// The largest second differences of depth and of its inverse that a surface may have.
+// Largest second differences of depth and of inverse depth on a surface.
 struct StepLimits {
   float depth_m = 1.0F;
   float inverse_depth_1_m = 1.0F;
@@ -44,7 +44,7 @@ StepLimits step_limits(const SceneView& view) {
 }
 
 // Whether the depth jumps between three samples in a row. On a plane the depth is linear in a
-// parallel view and its inverse in a perspective one, so a jump must show in both.
+// parallel view, its inverse in a perspective view; a jump must show in both.
 bool depth_jumps(const SceneView& view, size_t before, size_t here, size_t after,
                  const StepLimits& limits) {
   const float a = view.depth_m[before];
@@ -60,7 +60,7 @@ struct Grid {
   size_t at(int column, int row) const { return static_cast<size_t>(row) * columns + column; }
 };
 
-// The strongest value within `radius` along rows or columns.
+// Largest value within `radius` along rows or columns.
 std::vector<float> widened(const std::vector<float>& values, const Grid& grid, int radius,
                            bool along_rows) {
   std::vector<float> result(values.size());
@@ -83,7 +83,8 @@ Eigen::Vector3d as_light(const Rgb& colour) {
           linear_from_encoded(colour.blue)};
 }
 
-// A headlight alone flattens level surfaces; a sky shows the upward direction.
+// Headlight and sky: a headlight alone makes level surfaces look flat; the sky shows the upward
+// direction.
 double brightness(const SceneView& view, size_t sample) {
   const double sky = 0.5 + 0.5 * static_cast<double>(view.normal_lab[sample].z());
   return 0.30 + 0.30 * sky + 0.40 * static_cast<double>(view.cos_view[sample]);
@@ -121,7 +122,7 @@ std::vector<float> edge_strength(const SceneView& view) {
       const size_t before = grid.at(column - across, row - down);
       if (depth_jumps(view, before, here, after, limits)) edge = std::max(edge, border_strength);
     }
-    // The nearer side carries the line, so that outlines stay on the thing that they outline.
+    // The nearer sample carries the line, so that outlines are on the object.
     const size_t nearer = view.depth_m[after] < view.depth_m[here] ? after : here;
     strength[nearer] = std::max(strength[nearer], edge);
   };

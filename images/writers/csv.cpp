@@ -1,9 +1,9 @@
-// Maps and tables as comma-separated values (RFC 4180) behind lines of provenance that start
-// with "# ".
+// Maps and tables as comma-separated values (RFC 4180) after lines of provenance that start with "#
+// ".
 //
-// A map is one row per bin, x fastest, both rising, with the columns x and y (of the bin's centre),
+// A map has one row per bin, x fastest, both rising. The columns are x and y of the bin's centre,
 // value and standard error, each named with its unit: "x_m,y_m,value_W_m2,standard_error_W_m2".
-// Numbers read back as the same doubles; NaN is an empty cell, infinities are "inf" and "-inf".
+// Numbers are read back as the same doubles; NaN is an empty cell, infinities are "inf" and "-inf".
 #include "core/files.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
@@ -26,13 +26,13 @@ std::string preamble(const std::string& title, const Provenance& provenance) {
 
 std::string quoted_where_needed(const std::string& cell) {
   std::string clean = clean_text(cell);
-  // Spreadsheets read such a text as a formula, in quotes too, unless it is a number; the
-  // apostrophe makes it a text.
+  // Spreadsheets interpret a text that begins with one of these characters as a formula, even in
+  // quotes, unless it is a number. An apostrophe prevents this.
   if (!clean.empty() && std::string_view("=+-@").find(clean.front()) != std::string_view::npos &&
       clean != "-" && !number_in(clean)) {
     clean.insert(clean.begin(), '\'');
   }
-  // A leading '#' would read as a comment.
+  // A leading '#' would be read as a comment.
   if (clean.find_first_of(",\"") == std::string::npos && !clean.starts_with('#')) return clean;
   std::string quoted = "\"";
   for (const char c : clean) quoted += c == '"' ? "\"\"" : std::string(1, c);

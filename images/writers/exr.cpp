@@ -1,7 +1,7 @@
 // Maps as OpenEXR images of 32-bit floats, for further computation.
 //
-// Channels "value" and "standard_error". Named attributes photorque:unit, photorque:x_low, … and,
-// as "comments", all of it as JSON.
+// Channels "value" and "standard_error". Named attributes photorque:unit, photorque:x_low, …; all
+// metadata also as JSON in "comments".
 #include "images/writers/image_file.h"
 #include "images/writers/kind.h"
 #include "images/writers/metadata.h"

@@ -15,7 +15,7 @@
 namespace photorque::kinds::h5 {
 namespace {
 
-// Below a group, under a unique name.
+// Path below a group; throws InputError if the name is not unique.
 std::string place_for(const Hdf5File& file, const std::string& group, const std::string& name) {
   std::string place = group + "/" + Hdf5File::part(name);
   if (file.has(place)) throw InputError({}, name, "two results with this name", "different names");
@@ -47,7 +47,7 @@ void add_table(Hdf5File& file, const Table& table) {
   for (const Table::Column& column : table.columns) {
     const std::string own = place_for(file, place, column.name);
     if (column.size() == 0) {
-      file.group(own);  // no rows
+      file.group(own);  // a column without rows
     } else if (column.texts.empty()) {
       file.numbers(own, column.values, {column.values.size()});
     } else {

@@ -16,7 +16,7 @@ hid_t required(hid_t id) {
   return id;
 }
 
-// An identifier of the library, given back at the end.
+// Owner of an identifier of the library.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(required(id)), close_(close) {}
@@ -30,7 +30,7 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-// The library would print its errors.
+// Suppresses error messages that the library prints.
 class Quiet {
  public:
   Quiet() {
@@ -53,8 +53,8 @@ hid_t memory_only() {
   return properties;
 }
 
-// Texts have a fixed length, which every reader supports; ASCII where it suffices, as VTK's reader
-// requires.
+// Texts have a fixed length, which every reader supports. They are ASCII if possible, as VTK's
+// reader requires.
 hid_t text_type(size_t length, bool ascii) {
   const hid_t type = required(H5Tcopy(H5T_C_S1));
   H5Tset_size(type, std::max<size_t>(1, length));

@@ -11,12 +11,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The bytes of a file of one page; `path` determines its format and is named by an InputError. Made
-// in memory: OpenImageIO may fail to write to a disk without reporting it.
+// Bytes of a one-page file; `path` determines its format and appears in an InputError. The file is
+// built in memory, because OpenImageIO may fail to write to a disk without reporting it.
 std::string bytes_of(const fs::path& path, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                      const void* samples) {
   const std::string name = path.string();
-  OIIO::Filesystem::IOVecOutput bytes;  // outlives `output`, whose destructor writes the rest
+  OIIO::Filesystem::IOVecOutput bytes;  // must outlive `output`, whose destructor writes the rest
   const auto output = OIIO::ImageOutput::create(name);
   const auto check = [&](bool succeeded) {
     if (succeeded) return;
@@ -40,7 +40,7 @@ OIIO::ImageSpec spec_of(int width, int height, const std::vector<std::string>& c
   spec.attribute("ImageDescription", metadata.description);
   spec.attribute("DocumentName", metadata.title);
   spec.attribute("Software", metadata.program);
-  // Left out, OpenImageIO would write the time of day.
+  // Without this attribute OpenImageIO would write the time of day.
   spec.attribute("DateTime", "");
   return spec;
 }

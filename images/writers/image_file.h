@@ -1,8 +1,9 @@
-// Image files with metadata: EXR and PNG by OpenImageIO, TIFF by libtiff. Only this folder knows
-// them.
+// Image files with metadata: EXR and PNG by OpenImageIO, TIFF by libtiff. Only this folder uses
+// these libraries.
 //
 // All three formats are written without dates, on one thread: equal contents give equal bytes. Each
-// file appears whole or not at all (write_file_whole); InputError when it cannot be written.
+// file is written completely or not at all (write_file_whole). Throws InputError if it cannot be
+// written.
 #pragma once
 
 #include <filesystem>
@@ -14,9 +15,9 @@
 
 namespace photorque {
 
-// Attributes of a file. `description` is ASCII and is stored under the name that each format has
-// for it: "comments" in EXR, ImageDescription in TIFF, "Description" in PNG. `title` and `program`
-// likewise. `texts` and `numbers` are stored as named attributes where a format can (EXR).
+// Attributes of a file. `description` is ASCII and has a different name in each format: "comments"
+// in EXR, ImageDescription in TIFF, "Description" in PNG; similarly `title` and `program`. `texts`
+// and `numbers` are stored as named attributes if the format supports them (EXR).
 struct ImageMetadata {
   std::string description;
   std::string title;
@@ -31,16 +32,17 @@ struct ImageChannel {
   std::vector<float> samples;
 };
 
-// Channels of one size in a single OpenEXR part, losslessly compressed.
+// Writes channels of equal size in a single OpenEXR part, losslessly compressed.
 void write_exr(const std::filesystem::path& path, int width, int height,
                const std::vector<ImageChannel>& channels, const ImageMetadata& metadata);
 
-// Each channel, of at least one, is one page of 32-bit floats, named by its PageName and
-// DocumentName (in place of the title): the form of TIFF that most programs read, as many refuse
-// several float channels in a page. Losslessly compressed.
+// Writes each channel (at least one) as one page of 32-bit floats. Its name is in PageName and
+// DocumentName (in place of the title). Most programs read this form; many reject several float
+// channels in a page. Losslessly compressed.
 void write_tiff(const std::filesystem::path& path, int width, int height,
                 const std::vector<ImageChannel>& channels, const ImageMetadata& metadata);
 
+// Writes an 8-bit sRGB picture.
 void write_png(const std::filesystem::path& path, const Picture& picture,
                const ImageMetadata& metadata);
 
@@ -49,9 +51,9 @@ struct LinearPicture {
   std::vector<float> rgb;  // linear in [0, 1]; row by row from the top
 };
 
-// The bytes of a PNG or JPEG with sRGB values (IEC 61966-2-1); grey ones become equal red, green
-// and blue, opacity is left out. Throws InputError for other bytes, and for more than 2^26 texels,
-// by the header and before anything is decoded.
+// Decodes a PNG or JPEG with sRGB values (IEC 61966-2-1). Grey values become equal red, green and
+// blue; opacity is ignored. Throws InputError for other bytes. Throws it for more than 2^26 texels
+// by the header, before decoding.
 LinearPicture read_picture(const std::string& bytes);
 
 }  // namespace photorque

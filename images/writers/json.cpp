@@ -1,6 +1,6 @@
-// The headline figures as summary.json.
+// The main figures as summary.json.
 //
-// A caller that has the wall time and the number of rays writes summary_json.
+// Callers that know the wall time and the number of rays use summary_json().
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/format.h"

@@ -12,11 +12,11 @@
 
 namespace photorque {
 
-// InputError that names the table if its columns differ in length.
+// Throws InputError with the name of the table if its columns differ in length.
 void require_consistent(const Table& table);
 
-// folder/name.extension, with everything but ASCII letters, digits, '.', '_' and '-' in `name`
-// replaced by '_': names come from users' scenes and must not leave the folder.
+// The path folder/name.extension. Characters of `name` other than ASCII letters, digits, '.', '_'
+// and '-' become '_': names come from users' scenes and must not leave the folder.
 std::filesystem::path file_in(const std::filesystem::path& folder, const std::string& name,
                               const std::string& extension);
 
@@ -24,11 +24,10 @@ std::filesystem::path file_in(const std::filesystem::path& folder, const std::st
 struct WriterKind {
   std::string name;     // also the extension of its files
   std::string summary;  // one sentence, no full stop
-  // Writes what the format can express of `product` into `folder` (made if absent), one file per
-  // item, named after it; returns the paths in order. A format without content writes nothing. Each
-  // file appears whole or not at all. Equal arguments give equal bytes, and every file carries the
-  // provenance in a form that people and programs can read. InputError when an item's sizes
-  // disagree or a file cannot be written.
+  // Writes those items of `product` that the format supports into `folder` (created if missing),
+  // one file per item, named after it; returns the paths in order. Each file is written completely
+  // or not at all. Equal arguments give equal bytes. Every file contains the provenance in readable
+  // form. Throws InputError if an item's sizes disagree or a file cannot be written.
   std::function<std::vector<std::filesystem::path>(
       const Product& product, const Provenance& provenance, const std::filesystem::path& folder,
       PictureStyle style)>
@@ -51,7 +50,7 @@ std::vector<std::filesystem::path> write_each(const std::filesystem::path& folde
   return paths;
 }
 
-// Every kind named in images/CMakeLists.txt, in that order.
+// All kinds listed in images/CMakeLists.txt, in that order.
 std::vector<WriterKind> all_writer_kinds();
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-// The module: the functions of images/writers/image_file.h for the program that loads it.
+// The loadable module with the functions of images/writers/image_file.h.
 #include "images/writers/loading.h"
 
 extern "C" __attribute__((visibility("default"))) const photorque::PictureFunctions*

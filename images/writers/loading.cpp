@@ -25,8 +25,8 @@ constexpr const char* file_name = "photorque_pictures.so";
                        PHOTORQUE_MODULE_FOLDER + " from there");
 }
 
-// The module is beside the program or in its installation folder; nowhere else, also with other
-// variables of the environment.
+// The module must be beside the program or in its installation folder; environment variables cannot
+// change this.
 fs::path module_path() {
   const fs::path program = own_file().parent_path();
   for (const fs::path& place : {program, program / PHOTORQUE_MODULE_FOLDER}) {
@@ -36,10 +36,10 @@ fs::path module_path() {
   fail(program, "no " + std::string(file_name));
 }
 
-// Its libraries start threads as they are loaded. If one cannot start, they abort or wait without
-// end.
+// The module's libraries start threads while they are loaded. If a thread cannot start, they abort
+// or hang; therefore memory and threads are tested first.
 void require_room_and_threads() {
-  constexpr size_t room = size_t{512} << 20, threads = 16;  // they take 410 MB, and 4 threads
+  constexpr size_t room = size_t{512} << 20, threads = 16;  // they need 410 MB and 4 threads
   void* const place =
       ::mmap(nullptr, room, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (place == MAP_FAILED) {
@@ -65,7 +65,7 @@ void require_room_and_threads() {
   }
 }
 
-// Never unloaded: its exceptions may outlive any call.
+// The module is never unloaded, because its exceptions may outlive a call.
 const PictureFunctions& load() {
   require_room_and_threads();
   const fs::path path = module_path();

@@ -1,6 +1,6 @@
-// Pictures as files for a program that does not link OpenImageIO, which brings two hundred
-// libraries (video, volumes, OpenGL) with it and takes 0.2 s to load: they come with a module when
-// the first picture is written or read.
+// Picture files without linking OpenImageIO, which has two hundred dependencies (video, volumes,
+// OpenGL) and takes 0.2 s to load. A module with it is loaded when the first picture is written or
+// read.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace photorque {
 
-// The functions of the module for the program that loads it.
+// Functions of the module.
 struct PictureFunctions {
-  std::string build;  // version and hash of the sources: the program's own, or it is refused
+  std::string build;  // version and hash of the sources; must equal the program's
   decltype(&write_exr) exr;
   decltype(&write_tiff) tiff;
   decltype(&write_png) png;
@@ -24,10 +24,11 @@ inline std::string picture_build() {
   return build.version + " " + build.git_hash;
 }
 
-// InputError when the module is not there, before the work whose results could not be written.
+// Throws InputError if the module is missing. Called before work whose results could not be
+// written.
 void require_pictures();
 
-// The one name that the module exports.
+// The only exported name of the module.
 using PictureEntry = const PictureFunctions*();
 constexpr const char* picture_entry = "photorque_pictures";
 

@@ -9,23 +9,25 @@
 
 namespace photorque {
 
-// {"program", "version", "git_hash", "seed", "inputs": {file: hash}}.
+// JSON object {"program", "version", "git_hash", "seed", "inputs": {file: hash}}.
 nlohmann::ordered_json provenance_json(const Provenance& provenance);
 
-// {"name", "title", "unit", "x_label", …, "rows": "top row is the largest y", "provenance"}.
+// JSON object {"name", "title", "unit", "x_label", …, "rows": "top row is the largest y",
+// "provenance"}.
 nlohmann::ordered_json map_json(const Map& map, const Provenance& provenance);
 
-// One line of ASCII (other characters escaped), for formats whose text is ASCII or Latin-1.
+// JSON on one line of ASCII (other characters escaped), for formats whose text is ASCII or Latin-1.
 std::string ascii_line(const nlohmann::ordered_json& json);
 
-// "value" and "standard_error" (zeros where the map is exact), rounded to float. Image rows run
-// downwards: row 0 is the largest y. InputError if the map's sizes disagree.
+// Channels "value" and "standard_error" (zeros if the map is exact), rounded to float. Image rows
+// run downwards: row 0 is the largest y. Throws InputError if the map's sizes disagree.
 std::vector<ImageChannel> map_channels(const Map& map);
 
-// Description: map_json in one line. Texts and numbers: "photorque:unit", "photorque:x_low", …
+// Metadata of a map: the description is map_json() on one line; texts and numbers are
+// "photorque:unit", "photorque:x_low", …
 ImageMetadata map_metadata(const Map& map, const Provenance& provenance);
 
-// Metadata of a picture without a grid: description is {"title", "provenance"}.
+// Metadata of a picture without a grid: the description is {"title", "provenance"}.
 ImageMetadata picture_metadata(const std::string& title, const Provenance& provenance);
 
 }  // namespace photorque

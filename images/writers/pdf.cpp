@@ -1,6 +1,6 @@
-// Maps and plots as PDF pages, whose text can be searched and copied.
+// Maps and plots as PDF pages; their text can be searched and copied.
 //
-// The document's title is the map's or plot's, its subject the provenance as JSON.
+// The document's title is that of the map or plot, its subject the provenance as JSON.
 #include "core/files.h"
 #include "images/drawing/map.h"
 #include "images/drawing/plot.h"

@@ -27,9 +27,9 @@ std::vector<WriterKind> kinds_named(const std::vector<std::string>& formats) {
   return chosen;
 }
 
-// Maps and tables both become CSV, maps and plots both PNG, so a name may stand only once.
+// Maps and tables both become CSV files, maps and plots both PNG files, so names must be unique.
 void require_distinct_files(const Product& product) {
-  std::set<std::string> taken = {"summary"};  // of the JSON writer
+  std::set<std::string> taken = {"summary"};  // used by the JSON writer
   const auto take = [&](const std::string& name) {
     if (!taken.insert(file_in("", name, "").stem().string()).second) {
       throw InputError({}, name, "two results with this name", "different names");

@@ -1,4 +1,4 @@
-// Products to files in several formats at once.
+// Writes products to files in several formats.
 #pragma once
 
 #include <filesystem>
@@ -12,12 +12,12 @@
 
 namespace photorque {
 
-// InputError for the name of no writer kind.
+// Throws InputError for a name that is not a writer kind.
 void require_formats(const std::vector<std::string>& formats);
 
-// Writes `product` in each of `formats` (names of writer kinds; empty: all of them) and returns the
-// paths. InputError for an unknown format, and when two items would share a file. `folder` may hold
-// a part when something fails: for folders that are published as one (StagedFiles).
+// Writes `product` in each of `formats` (names of writer kinds; empty: all) and returns the paths.
+// Throws InputError for an unknown format, and if two items would share a file. After an error
+// `folder` may contain some of the files; use a folder that is published as a whole (StagedFiles).
 std::vector<std::filesystem::path> write_formats(const Product& product,
                                                  const Provenance& provenance,
                                                  const std::filesystem::path& folder,
@@ -26,8 +26,8 @@ std::vector<std::filesystem::path> write_formats(const Product& product,
 
 inline constexpr const char* summary_schema = "photorque.summary/1";
 
-// The cost of a run; left out where unknown. The wall time is the only number that differs between
-// two equal runs, and stands on a separate line.
+// Cost of a run; unknown values are omitted. The wall time is the only number that differs between
+// equal runs; it has a separate line.
 struct RunCost {
   std::optional<double> wall_time_s = {};
   std::optional<uint64_t> rays = {};

@@ -16,7 +16,7 @@
 namespace photorque {
 namespace {
 
-// IEC 61966-2-1.
+// Source: IEC 61966-2-1.
 float linear_from_srgb(float value) {
   return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
 }
@@ -27,8 +27,8 @@ uint32_t word_of(std::string_view bytes) {
   return word;
 }
 
-// Whether every chunk of a PNG is there and as it was written: otherwise its library prints on the
-// terminal, beside the one line of this program.
+// Whether every chunk of a PNG is complete with a correct checksum. Otherwise libpng would print
+// messages on the terminal.
 bool has_whole_chunks(std::string_view png) {
   constexpr size_t signature = 8,
                    around = 12;  // of a chunk: length and type before, checksum after
@@ -45,8 +45,8 @@ bool has_whole_chunks(std::string_view png) {
   return false;
 }
 
-// Width and height by the header: libraries make room for all of a progressive JPEG as soon as they
-// open it. Nothing where there is no header. Source: ITU-T T.81, annex B; ISO/IEC 15948:2003,
+// Width and height by the header, because libraries allocate memory for a whole progressive JPEG
+// when they open it. Empty without a header. Source: ITU-T T.81, annex B; ISO/IEC 15948:2003,
 // clause 11.2.2.
 std::optional<std::array<int64_t, 2>> stated_size(std::string_view bytes) {
   constexpr size_t png_width = 16, png_end = 24, frame_bytes = 9;
@@ -72,13 +72,13 @@ std::optional<std::array<int64_t, 2>> stated_size(std::string_view bytes) {
   return std::nullopt;
 }
 
-// Throws InputError for a picture that is too large, or that is not whole: a byte of deflated data
-// stands for 1032 bytes at most, of eight texels each, one of a JPEG for fewer, and a decoder would
-// make up the rest.
+// Throws InputError for a picture that is too large or truncated. A byte of deflated data yields at
+// most 1032 bytes of eight texels each, a byte of JPEG fewer. A decoder would invent the missing
+// texels.
 void require_affordable(const std::array<int64_t, 2>& size, size_t bytes) {
-  // Three floats each: 0.8 GB.
+  // Three floats per texel: 0.8 GB.
   constexpr int64_t max_texels = int64_t{1} << 26, texels_per_byte = int64_t{8} * 1032;
-  // Each side has 32 bits; the product of such may have 64.
+  // Each side has 32 bits, so that the product can need 64 bits.
   const auto [width, height] = size;
   if (width > max_texels || height > max_texels || width * height > max_texels) {
     throw InputError({"picture"}, "",
@@ -105,7 +105,7 @@ LinearPicture read_picture(const std::string& bytes) {
   }
   if (const auto size = stated_size(bytes)) require_affordable(*size, bytes.size());
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-  // Colour as it is stored: its library would multiply it by alpha, which glTF does not ask for.
+  // Keep colours as stored: OpenImageIO would multiply them by alpha, which glTF does not require.
   OIIO::ImageSpec wanted;
   wanted.attribute("oiio:UnassociatedAlpha", 1);
   void* const from = &memory;

@@ -17,21 +17,21 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* list_name = "files.json";
-// The files that describe all others: goes first and comes last.
+// Files that describe all others: removed first and written last.
 constexpr const char* heads[] = {"summary.json", "diagnosis.json"};
 
 bool is_head(const std::string& name) {
   return std::ranges::find(heads, name) != std::end(heads);
 }
 
-// Lists of the files of commands, by command; nothing where no readable list is.
+// Lists of the files of commands, by command; empty if there is no readable list.
 std::optional<Json> lists_in(const fs::path& path) {
   std::error_code failure;
   if (!fs::is_regular_file(path, failure)) return std::nullopt;
   const std::string text = read_file(path);
   if (extent_of_json(text).depth > deepest_json) return std::nullopt;
   const Json read = Json::parse(text, nullptr, false);
-  // Whatever stands there, it is read as far as it has the form that is written here.
+  // Content of another form is ignored.
   const bool known = read.is_object() && read.contains("schema") &&
                      read["schema"] == "photorque.files/1" && read.contains("commands") &&
                      read["commands"].is_object();
@@ -41,7 +41,7 @@ Json read_lists(const fs::path& path) {
   return lists_in(path).value_or(Json::object());
 }
 
-// Plain names alone: a list that was tampered with must not reach other folders.
+// Accepts plain file names only: a manipulated list must not refer to other folders.
 std::set<std::string> listed(const Json& lists, const std::string& command) {
   std::set<std::string> names;
   const auto list = lists.find(command);
@@ -55,7 +55,7 @@ std::set<std::string> listed(const Json& lists, const std::string& command) {
   return names;
 }
 
-// Files that one command has just written leave the lists of the others.
+// Files that one command has just written are removed from the lists of the others.
 void write_lists(const fs::path& path, Json lists, const std::string& command,
                  const std::set<std::string>& names, const Provenance& provenance) {
   for (auto& [other, list] : lists.items()) {
@@ -69,8 +69,8 @@ void write_lists(const fs::path& path, Json lists, const std::string& command,
   write_file_whole(path, all.dump(2) + "\n");
 }
 
-// A file that no command lists is the user's, and so is a list of another form: it goes out of the
-// way of results of that name.
+// Files that no command lists, and lists of another form, belong to the user. They are renamed if a
+// result has their name.
 void keep_own_files(const fs::path& folder, std::set<std::string> now) {
   const std::optional<Json> lists = lists_in(folder / list_name);
   std::set<std::string> results;
@@ -150,7 +150,7 @@ std::vector<fs::path> StagedFiles::publish_as(const std::string& command,
   const Json lists = read_lists(list_path);
   std::set<std::string> ever = listed(lists, command);
   ever.insert(now.begin(), now.end());
-  // A run killed from here on leaves a list of everything that may stand here.
+  // If the run is killed from here on, the list contains all files that may exist.
   write_lists(list_path, lists, command, ever, provenance);
   published_ = true;
   std::error_code ignored;

@@ -1,4 +1,4 @@
-// Results that appear together: written aside, then moved to where they belong.
+// Publication of results as a whole: files are written to a hidden folder, then moved.
 #pragma once
 
 #include <filesystem>
@@ -9,29 +9,29 @@
 
 namespace photorque {
 
-// Whether files.json lists it among the files of that command in the folder.
+// Whether files.json lists the file as a result of that command in the folder.
 bool is_result_of(const std::filesystem::path& folder, const std::string& command,
                   const std::string& name);
 
-// A hidden folder within the one where files belong. What it made goes away with it unless the
-// files were published.
+// A hidden folder within the target folder. Its destructor removes it, with all files that were not
+// published.
 class StagedFiles {
  public:
-  // InputError when the folder cannot be made.
+  // Throws InputError if the folder cannot be created.
   explicit StagedFiles(const std::filesystem::path& folder);
   ~StagedFiles();
   StagedFiles(const StagedFiles&) = delete;
   StagedFiles& operator=(const StagedFiles&) = delete;
 
-  // Where to write.
+  // Folder to write to.
   const std::filesystem::path& path() const { return path_; }
 
-  // Moves all files to where they belong and returns their paths, in the order of their names. They
-  // are the results of one command, and replace those of its last run in this folder:
-  // files.json lists the files of a command, and files of the list that were not written again go
-  // away. What no command lists and has the name of a result is kept beside it as NAME~.
-  // summary.json (of `diagnose`, diagnosis.json) goes first and comes last: where it exists, all
-  // files that it describes belong to one run.
+  // Moves all files to the target folder and returns their paths, sorted by name. They become the
+  // results of one command and replace those of its last run in this folder. files.json lists the
+  // files of each command; listed files that were not written again are deleted. A file that no
+  // command lists and that has the name of a result is renamed to NAME~. summary.json (of
+  // `diagnose`, diagnosis.json) is removed first and written last: if it exists, all files that it
+  // describes belong to one run.
   std::vector<std::filesystem::path> publish_as(const std::string& command,
                                                 const Provenance& provenance);
 

@@ -1,6 +1,6 @@
-// Maps and plots as scalable pictures, whose letters are text.
+// Maps and plots as scalable pictures; their letters are text.
 //
-// <title> holds the title, <desc> the provenance as text, <metadata> the same as JSON.
+// <title> contains the title, <desc> the provenance as text, <metadata> the provenance as JSON.
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/format.h"
@@ -12,7 +12,7 @@
 namespace photorque::kinds::svg {
 namespace {
 
-// cairo writes no metadata; it belongs directly behind the opening tag of the root.
+// Inserts the metadata, which cairo does not write, directly after the opening tag of the root.
 std::string with_metadata(const std::string& svg, const std::string& title,
                           const Provenance& provenance) {
   const size_t root = svg.find("<svg");

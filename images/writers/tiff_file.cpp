@@ -1,5 +1,5 @@
-// TIFF files, the only place that knows libtiff. They are made in memory: what libtiff writes to a
-// disk itself may fail without a word, and OpenImageIO 2.4 makes one page in memory, not several.
+// TIFF files; the only place for libtiff. They are built in memory: libtiff may fail to write to a
+// disk without an error, and OpenImageIO 2.4 supports only one page in memory.
 #include <tiffio.h>
 
 #include <algorithm>
@@ -21,22 +21,22 @@ namespace fs = std::filesystem;
 
 constexpr uint32_t rows_per_strip = 32;
 
-// Above this many bytes of samples, offsets take 64 bits (BigTIFF): those of TIFF end at 4 GiB.
+// Above this number of bytes, offsets take 64 bits (BigTIFF): those of TIFF end at 4 GiB.
 constexpr double largest_classic = 3.5e9;
 
-// A file in memory, and its error. No exception may pass through libtiff.
+// A file in memory, and its error. Exceptions must not pass through libtiff.
 struct Memory {
   std::string bytes = {};
   size_t at = 0;
   std::exception_ptr exception = {};
-  std::array<char, 512> error = {};  // the first; empty for none
+  std::array<char, 512> error = {};  // the first error; empty for none
 };
 
 Memory& memory(thandle_t handle) {
   return *static_cast<Memory*>(handle);
 }
 
-// libtiff reads its directories again, to link the next one.
+// libtiff reads its directories again to link the next one.
 tmsize_t read(thandle_t handle, void* into, tmsize_t size) {
   Memory& file = memory(handle);
   if (file.at >= file.bytes.size()) return 0;
@@ -87,7 +87,7 @@ int pass_over_warning(TIFF*, void*, const char*, const char*, va_list) {
 
 using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
-// Little-endian on every machine. Null where it fails.
+// Opens a little-endian file on every machine. Null on failure.
 Tiff open(Memory& file, bool big) {
   const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
       TIFFOpenOptionsAlloc(), &TIFFOpenOptionsFree);
@@ -118,7 +118,7 @@ bool describe_page(TIFF* tiff, uint32_t width, uint32_t height, const std::strin
          TIFFSetField(tiff, TIFFTAG_SOFTWARE, metadata.program.c_str());
 }
 
-// From a copy: libtiff may turn the bytes about where they lie.
+// Writes copies of the samples, because libtiff may swap bytes in place.
 bool write_samples(TIFF* tiff, size_t width, const std::vector<float>& samples) {
   std::vector<float> strip;
   const size_t full = width * rows_per_strip;

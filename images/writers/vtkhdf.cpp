@@ -1,10 +1,10 @@
 // Maps as VTKHDF files (ImageData, version 1.0), for ParaView and VTK.
 //
-// A point stands in the middle of every bin: PointData "value" and "standard_error". VTK's reader
-// needs a volume (9.1 writes beyond its memory for a flat image, and misreads CellData), so the map
-// is a sheet of two equal layers, and a single row or column stands twice too. What VTK knows
-// nothing of stands in attributes of the group PointData: title, unit, labels of the axes. Source
-// of the layout: Kitware, "VTKHDF file format" (VTK documentation, release 9.1).
+// Every bin has a point at its centre: PointData "value" and "standard_error". VTK's reader
+// requires a volume (9.1 writes beyond its memory for a flat image, and misreads CellData).
+// Therefore the map is stored as two equal layers, and a single row or column is duplicated, too.
+// Further metadata are attributes of the group PointData: title, unit, labels of the axes. Source
+// of the format: Kitware, "VTKHDF file format" (VTK documentation, release 9.1).
 #include <algorithm>
 
 #include "images/drawing/map.h"
@@ -14,7 +14,7 @@
 namespace photorque::kinds::vtkhdf {
 namespace {
 
-// Where the reader needs two, one is repeated.
+// Sizes of the stored grid; a single row or column is duplicated.
 struct Sheet {
   int width, height;
   static constexpr int layers = 2;

@@ -4,9 +4,9 @@ namespace photorque::python {
 
 py::array view(const double* first, const std::vector<py::ssize_t>& shape,
                const std::vector<py::ssize_t>& strides, const py::object& owner) {
-  if (first == nullptr) return py::array_t<double>(shape);  // no numbers, nothing to look at
+  if (first == nullptr) return py::array_t<double>(shape);  // no numbers: an empty array
   py::array array(py::dtype::of<double>(), shape, strides, first, owner);
-  // As numpy.ndarray.setflags(write=False), which takes ten times as long to call.
+  // Has the effect of numpy.ndarray.setflags(write=False), which takes ten times as long.
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
 }

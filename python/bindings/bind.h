@@ -1,4 +1,4 @@
-// One function for each concept, in the file of its name.
+// One function per concept, defined in the file of that name.
 #pragma once
 
 #include <pybind11/pybind11.h>

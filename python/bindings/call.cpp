@@ -13,16 +13,17 @@ struct Call::State {
   py::object progress, log;
   std::thread::id caller = std::this_thread::get_id();
   std::chrono::steady_clock::time_point last = {};
-  std::string task;  // whose progress ended below 1
+  std::string task;  // task whose last reported fraction was below 1
   std::optional<py::error_already_set> raised = {};
   std::atomic<bool> stopped = false;
 
-  // Reaches Call::run(), which puts what was raised in its place.
+  // Throws if the run was stopped. Call::run() replaces this exception by the Python error.
   void go_on() const {
     if (stopped) throw NumericalError("interrupted");
   }
 
-  // With the lock held: signals, then one call; what is raised ends the run.
+  // Requires the interpreter's lock. Handles signals, then calls `report`; an exception ends the
+  // run.
   template <class Report>
   void call_report(const Report& report) {
     try {
@@ -49,8 +50,8 @@ Call::Call(std::filesystem::path experiment, py::object progress, py::object log
 Call::~Call() = default;
 
 Console Call::console() const {
-  // Workers of the library report too: they neither wait for the lock nor handle signals, but stop
-  // with the caller.
+  // Worker threads of the library also report. They do not wait for the lock or handle signals, but
+  // stop when the caller has stopped.
   const auto is_caller = [state = state_.get()] {
     return std::this_thread::get_id() == state->caller;
   };

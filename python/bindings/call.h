@@ -1,5 +1,5 @@
-// One call from Python into the library: other Python threads go on meanwhile, progress is
-// reported, Ctrl-C ends the run.
+// One call from Python into the library: other Python threads can run, progress is reported, Ctrl-C
+// ends the run.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -19,23 +19,22 @@ namespace py = pybind11;
 
 class Call {
  public:
-  // `progress(task, fraction)` and `log(line)` are called on the calling thread, or None.
+  // `progress(task, fraction)` and `log(line)` are called on the calling thread; each may be None.
   Call(std::filesystem::path experiment, py::object progress, py::object log);
   ~Call();
 
-  // To be handed to the run. What a callback raises, and Ctrl-C, ends the run at the next word.
+  // Console for the run. An exception of a callback, and Ctrl-C, end the run at the next report.
   Console console() const;
 
-  // For code of the run that calls Python and meets an error there: ends the run with it. Always
-  // throws.
+  // For code of the run that calls Python: ends the run with the error of that call. Always throws.
   using Failing = std::function<void(py::error_already_set)>;
   Failing failing() const;
 
-  // Throws what a callback raised, if one did.
+  // Throws the exception that a callback raised, if any.
   void rethrow_python() const;
 
-  // `work()` without the interpreter's lock. An error of the input that names no file gets that of
-  // the experiment, as the program says it.
+  // Calls `work()` without the interpreter's lock. An InputError without a file gets the
+  // experiment's name, as in the program's messages.
   template <class Work>
   auto run(const Work& work) const {
     std::optional<decltype(work())> result;

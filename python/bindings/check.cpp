@@ -1,4 +1,4 @@
-// check(): what is wrong with an experiment, without running it.
+// check(): validation of an experiment without a run.
 #include <pybind11/stl.h>
 
 #include "python/bindings/bind.h"
@@ -14,7 +14,7 @@ std::shared_ptr<CheckReport> check_of(const ExperimentHandle& experiment) {
   return call.run([&] { return std::make_shared<CheckReport>(run_check(experiment.options)); });
 }
 
-// Common tasks of every run: options, callbacks, the lock let go and taken.
+// Performs the tasks common to all runs (options, callbacks, release of the lock) and nothing else.
 std::shared_ptr<RunOptions> nothing(const ExperimentHandle& experiment, int threads,
                                     const py::object& seed, const py::object& progress,
                                     const py::object& log) {

@@ -1,4 +1,4 @@
-// diagnose(): what physics is missing between an experiment and its recordings.
+// diagnose(): effects that are missing in an experiment according to its recordings.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 

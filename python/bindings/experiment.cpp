@@ -10,8 +10,9 @@
 namespace photorque::python {
 namespace {
 
-// Python's values as settings and back: dict, list, tuple, str, bool, int, float, and NumPy's.
-// `key` is how an error calls the value. InputError for what no experiment can hold.
+// Conversion of Python values to settings and back: dict, list, tuple, str, bool, int, float, and
+// NumPy's types. `key` names the value in errors. Throws InputError for values that experiments do
+// not support.
 SettingsNode settings_of(const py::handle& value, const std::string& key);
 py::object value_of(const SettingsNode& node);
 
@@ -71,7 +72,7 @@ SettingsNode settings_of(const py::handle& value, const std::string& key) {
   if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
     return array_of(value, key);
   }
-  // NumPy's arrays and numbers become Python's; paths become texts.
+  // NumPy arrays and numbers become Python values; paths become texts.
   if (py::hasattr(value, "tolist")) return settings_of(value.attr("tolist")(), key);
   if (py::hasattr(value, "__fspath__")) return settings_of(value.attr("__fspath__")(), key);
   throw InputError({}, key, py::str(py::repr(value)),
@@ -82,8 +83,7 @@ py::object value_of(const SettingsNode& node) {
   return std::visit(ToPython{}, node.value);
 }
 
-// The tree of the text with all changes; InputError where the text is no TOML or a change makes no
-// sense.
+// Tree of the text with all overrides. Throws InputError for invalid TOML or an invalid override.
 SettingsNode tree_of(const RunOptions& options) {
   SettingsNode root = parse_toml(*options.text, options.experiment.string());
   for (const std::string& one : options.overrides) apply_override(root, one);

@@ -9,11 +9,11 @@ namespace photorque::python {
 
 namespace py = pybind11;
 
-// The nominal model of a laboratory: the text of an experiment and changes to its keys.
+// The nominal model of a laboratory: the text of an experiment, with overrides of its keys.
 struct ExperimentHandle {
-  RunOptions options;  // with a text
+  RunOptions options;  // includes the text
 
-  // For a run on so many threads (0: all) and, unless None, with another seed.
+  // Options of a run with this number of threads (0: all) and, unless None, with another seed.
   RunOptions with(int threads, const py::object& seed) const;
 };
 

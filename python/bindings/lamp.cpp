@@ -18,7 +18,7 @@ namespace {
 
 using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// A lamp as it was described, without a call that it shines in.
+// Description of a lamp, independent of a run.
 struct LampHandle {
   std::string name;
   py::object emit;
@@ -27,7 +27,8 @@ struct LampHandle {
   RigidTransform lab_from_emitter;
 };
 
-// The library lets go of its lamps on any thread, without the lock.
+// The deleter takes the interpreter's lock, because the library releases lamps on any thread
+// without it.
 std::shared_ptr<py::object> shared_function(const py::object& function) {
   return {new py::object(function), [](py::object* held) {
             const py::gil_scoped_acquire lock;
@@ -35,7 +36,7 @@ std::shared_ptr<py::object> shared_function(const py::object& function) {
           }};
 }
 
-// The first rays of a lamp, block by block: `rays` is a multiple of a block.
+// Calls `use` with the first rays of a lamp, block by block; `rays` must be a multiple of a block.
 template <class Use>
 void for_first_rays(const Emitter& emitter, uint32_t rays, const Use& use) {
   SampleBlock samples;
@@ -70,7 +71,7 @@ class OwnLamp final : public Emitter {
     }
   }
 
-  // Constant over each of the cones that hold equal parts of the light.
+  // Constant over each of the cones that contain equal parts of the light.
   double relative_intensity(double angle_rad) const override {
     if (angle_rad < 0.0 || angle_rad >= edges_rad_.back()) return 0.0;
     const auto above = std::upper_bound(edges_rad_.begin() + 1, edges_rad_.end() - 1, angle_rad);
@@ -123,7 +124,7 @@ class OwnLamp final : public Emitter {
     throw py::error_already_set();
   }
 
-  // From what the function gives: which cones about the axis hold each a 128th of 65,536 rays.
+  // Tabulates the intensity: angles of cones about the axis that each contain 1/128 of 65,536 rays.
   void find_intensity() {
     constexpr uint32_t rays = 256 * sobol_block;
     std::vector<double> angles_rad;
@@ -137,7 +138,7 @@ class OwnLamp final : public Emitter {
     edges_rad_ = {0.0};
     for (size_t cone = 0; cone < cones; ++cone) {
       const double edge_rad = angles_rad[(cone + 1) * angles_rad.size() / cones - 1];
-      // Cones of no opening, of parallel light, are left out.
+      // Cones of zero opening (parallel light) are omitted.
       const double solid_sr = 2.0 * pi * (std::cos(edges_rad_.back()) - std::cos(edge_rad));
       if (solid_sr <= 1e-14) continue;
       edges_rad_.push_back(edge_rad);
@@ -158,7 +159,8 @@ class OwnLamp final : public Emitter {
   std::vector<double> edges_rad_, intensity_;
 };
 
-// The identity of the lamp in the provenance: its light, which says more than its text.
+// Hash of the lamp in the provenance. It is computed from the emitted rays, which define the lamp
+// better than its source text.
 std::string hash_of(const Beam& beam) {
   constexpr uint32_t rays = 16 * sobol_block;
   std::string bytes;

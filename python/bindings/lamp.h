@@ -1,4 +1,4 @@
-// Lamps written in Python: for trying one out before it becomes a kind.
+// Lamps written in Python, for experiments before a new kind is implemented.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -15,11 +15,11 @@ namespace photorque::python {
 // The Python class Lamp.
 void bind_lamp(py::module_& module);
 
-// Lets the run of `options` shine with a list of Lamps too. What their functions raise ends `call`.
+// Adds a list of Lamps to the run of `options`. An exception in their functions ends `call`.
 void add_lamps(RunOptions& options, const py::iterable& lamps, const Call& call);
 
-// Defines the Python function of a traced run, with the arguments of all of them.
-// `run(options, console)` gives what it returns.
+// Defines the Python function of a traced run with the common arguments. The function returns the
+// result of `run(options, console)`.
 template <class Run>
 void def_traced(py::module_& module, const char* name, const Run& run, const char* doc) {
   module.def(

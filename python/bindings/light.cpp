@@ -1,4 +1,4 @@
-// trace() and power(): irradiance, radiation force and torque, the solar array.
+// trace() and power(): irradiance, radiation force and torque, solar-array power.
 #include <pybind11/stl.h>
 
 #include "python/bindings/arrays.h"
@@ -38,7 +38,7 @@ struct PowerHandle : LightHandle {
   ArrayResult power = {};
 };
 
-// A trace, or a power with what it adds.
+// Result of a trace or of a power run as a Python object.
 template <class Handle, class Run>
 std::shared_ptr<Handle> handle_of(Run& run, const RunOptions& options, const char* verb) {
   auto handle = std::make_shared<Handle>();

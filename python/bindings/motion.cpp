@@ -1,4 +1,4 @@
-// propagate(): the platform through its disturbances and in its light.
+// propagate(): motion of the platform under its disturbances and light.
 #include "python/bindings/arrays.h"
 #include "python/bindings/bind.h"
 #include "python/bindings/call.h"
@@ -16,7 +16,7 @@ struct MotionHandle : MotionRun {
   RunOptions options;
 };
 
-// The text of a function, where Python still has it.
+// Source text of a function, if Python has it.
 std::string source_of(const py::object& function) {
   try {
     return py::str(py::module_::import("inspect").attr("getsource")(function));
@@ -57,7 +57,7 @@ py::dict recording_of(const py::object& self) {
   return channels;
 }
 
-// A view of what stands in every state from `first` on.
+// A view of `width` consecutive numbers in every state, from `first` on.
 py::array state_view(const py::object& self, const double* first, py::ssize_t width) {
   const auto rows = static_cast<py::ssize_t>(motion_of(self).states.size());
   const auto stride = static_cast<py::ssize_t>(sizeof(PlatformState));

@@ -1,4 +1,4 @@
-// Pages of runs for browsers and glTF viewers, from Python.
+// HTML pages and glTF scenes of runs, from Python.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -22,8 +22,8 @@ inline PageHead head_of(const RunOptions& options, const std::string& verb) {
   return {options.experiment.stem().string(), verb, "photorque." + function + "(\"" + name + "\")"};
 }
 
-// Writes one file of a run to a path of the caller's; `file` makes it, without the interpreter's
-// lock.
+// Writes one file of a run to a path given by the caller; `file` makes it, without the
+// interpreter's lock.
 template <class MakeFile>
 std::string write_alone(const std::filesystem::path& path, const MakeFile& file) {
   const py::gil_scoped_release release;

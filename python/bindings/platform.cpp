@@ -1,4 +1,4 @@
-// budget() and balance(): the platform's torques at one state, and where its mass is.
+// budget() and balance(): torques on the platform at one state, and its mass distribution.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 

@@ -1,4 +1,4 @@
-// render(): a picture of the scene, as pixels.
+// render(): a picture of the scene as pixels.
 #include "tools/verbs/render.h"
 
 #include <pybind11/numpy.h>

@@ -112,7 +112,7 @@ const char* style_of(const Plot::Curve& curve) {
   return curve.dashed ? "dashed" : "line";
 }
 
-// The first axes of a plot and those below alike.
+// The first panel of a plot and those below it, in one format.
 py::list panels_of(const Plot& plot) {
   py::list panels;
   panels.append(Plot::Panel{plot.y_label, plot.curves, plot.y_log, plot.levels, plot.robust_range});

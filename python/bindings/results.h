@@ -1,4 +1,4 @@
-// The results of every run: figures with errors, tables, maps, provenance, files.
+// Results of every run: figures with errors, tables, maps, provenance, files.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -16,8 +16,9 @@ namespace py = pybind11;
 // The Python classes Estimate, Table, Map, Plot, Panel and Curve.
 void bind_results(py::module_& module);
 
+// The quantities of a result as Estimates, by name.
 py::dict figures_of(const RunResult& result);
-// Views by name: they keep `owner` alive.
+// Views by name; they keep `owner` alive.
 template <class Item>
 py::dict views_of(const std::vector<Item>& items, const py::object& owner) {
   py::dict views;
@@ -27,13 +28,14 @@ py::dict views_of(const std::vector<Item>& items, const py::object& owner) {
   return views;
 }
 py::dict provenance_of(const Provenance& provenance);
-// "<power: emitted_W = 88, absorbed_W = 76.8592 ± 0.0014, …>": the command and its first figures.
+// Text of a result: the command and its first figures, such as "<power: emitted_W = 88,
+// absorbed_W = 76.8592 ± 0.0014, …>".
 std::string text_of(const RunResult& result, const std::string& command);
-// As the results of this command of the program.
+// Writes the files that the program writes for this command; returns their paths.
 py::list write_of(const RunResult& result, const std::filesystem::path& folder,
                   const std::string& command, const std::vector<std::string>& formats);
-// A property of a run that has a member `result`: a view of its table of this name.
-// NumericalError if there is none.
+// Property of a run that has a member `result`: a view of the table of this name. Throws
+// NumericalError if it is missing.
 template <class Run>
 auto table_view(const char* name) {
   return [name](const py::object& self) {
@@ -42,8 +44,8 @@ auto table_view(const char* name) {
   };
 }
 
-// Gives the class of a run, which has a member `result`, what all runs have. `command`: that of the
-// program that gives the same.
+// Adds the common properties of all runs to the class of a run, which has a member `result`.
+// `command` is the equivalent command of the program.
 template <class Run, class... More>
 void add_result(py::class_<Run, More...>& type, const std::string& command) {
   const auto result_of = [](const py::object& self) -> const RunResult& {

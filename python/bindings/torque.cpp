@@ -10,18 +10,18 @@ namespace {
 
 using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// Inputs of a law: time, quaternion (w, x, y, z), rate.
+// Inputs of a law: time, quaternion (w, x, y, z), angular rate.
 constexpr size_t variables = 8;
 using Variables = std::array<double, variables>;
 using Torque = std::array<double, 3>;
 
-// One evaluation of the function at many instants.
+// Evaluation of the function at many instants.
 class Evaluation {
  public:
   Evaluation(std::string name, py::object function, Call::Failing failing)
       : name_(std::move(name)), function_(std::move(function)), failing_(std::move(failing)) {}
 
-  // For the library, without the lock.
+  // Called by the library without the interpreter's lock.
   std::vector<Torque> operator()(const std::vector<Variables>& instants) const {
     const py::gil_scoped_acquire lock;
     try {
@@ -86,7 +86,7 @@ class OwnTorque final : public TorqueLaw<OwnTorque> {
     return result;
   }
 
-  // By central differences in every variable, all in one call.
+  // Derivatives by central differences in every variable, in a single call.
   Vec3Of<DualLanes> torque(const ParametersAndStates<DualLanes>&,
                            const EvaluationContext<DualLanes>& now) const {
     const std::array<DualLanes, variables> x = variables_of(now);
@@ -118,8 +118,7 @@ class OwnTorque final : public TorqueLaw<OwnTorque> {
   }
 
  private:
-  // Step in seconds, in quaternion components and in rad/s: about the cube root of the rounding
-  // error.
+  // Step in seconds, quaternion components and rad/s: about the cube root of the rounding error.
   static constexpr double step = 1e-5;
 
   template <class T>

@@ -1,4 +1,5 @@
-// camera() and estimate(): how the attitude is seen, and what readings of it say.
+// camera() and estimate(): errors of the attitude measurement, and attitude estimation from
+// readings.
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

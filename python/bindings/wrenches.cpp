@@ -1,4 +1,4 @@
-// torque_map(): the wrench of light over attitudes, or over directions of light.
+// torque_map(): wrench of light over attitudes or over directions of light.
 #include "python/bindings/arrays.h"
 #include "python/bindings/bind.h"
 #include "python/bindings/call.h"

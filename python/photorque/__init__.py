@@ -1,9 +1,8 @@
 """Light, torque and attitude of free-floating platforms.
 
-An Experiment is a TOML file or a dict with the same keys; functions named as the program's commands
-run it and give NumPy arrays that look at the library's own numbers. Units stand in names, standard
-errors beside values. Wrong input raises InputError with one line; a computation that fails raises
-NumericalError.
+An Experiment is a TOML file or a dict with the same keys. Functions named like the program's commands run
+it and return NumPy arrays that are views of the library's numbers. Names contain units; values have standard
+errors. Wrong input raises InputError with one line; a computation that fails raises NumericalError.
 """
 
 from photorque._photorque import (

@@ -1,4 +1,4 @@
-"""Results as pictures (matplotlib) and as xarray, and the progress of long runs."""
+"""Results as plots (matplotlib) and as xarray, and a progress bar for long runs."""
 
 import sys
 from collections.abc import Callable
@@ -10,7 +10,7 @@ _WIDTH_IN, _HEIGHT_IN = 6.4, 3.6
 
 
 def draw_map(field: Any, axes: Any = None) -> Any:
-    """A Map as an image with a colour bar; the matplotlib Axes."""
+    """Draws a Map as an image with a colour bar; returns the matplotlib Axes."""
     from matplotlib import pyplot  # type: ignore[import]
 
     if axes is None:
@@ -46,7 +46,7 @@ def _spacing(x: Any) -> float:
 
 
 def draw_plot(plot: Any, axes: Any = None) -> Any:
-    """A Plot, its panels below each other; the matplotlib Axes, an array of them for several panels."""
+    """Draws a Plot with its panels below each other; returns the matplotlib Axes, an array for several panels."""
     from matplotlib import pyplot
 
     count = len(plot.panels)
@@ -72,7 +72,8 @@ def draw_plot(plot: Any, axes: Any = None) -> Any:
 
 
 def draw_result(result: Any, name: str | None = None, axes: Any = None) -> Any:
-    """The map or plot `name` of a result: its matplotlib Axes. Without a name a list of the Axes of all."""
+    """Draws the map or plot `name` of a result and returns its matplotlib Axes. Without a name, draws all and returns
+    a list."""
     drawers = {key: draw_map for key in result.maps} | {key: draw_plot for key in result.plots}
     if name is None:
         return [draw_result(result, each) for each in drawers]
@@ -82,7 +83,7 @@ def draw_result(result: Any, name: str | None = None, axes: Any = None) -> Any:
 
 
 def map_to_xarray(field: Any) -> Any:
-    """A Map as an xarray.Dataset over the middles of its bins."""
+    """A Map as an xarray.Dataset over the centres of its bins."""
     import xarray
 
     rows, columns = field.value.shape

@@ -6,6 +6,6 @@ import sys
 
 
 def main() -> None:
-    """Runs the program with this process's arguments, in this process's place."""
+    """Replaces this process by the program, with the same arguments."""
     program = pathlib.Path(__file__).resolve().parent / "bin" / "photorque"
     os.execv(program, [str(program), *sys.argv[1:]])

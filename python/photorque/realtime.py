@@ -1,13 +1,13 @@
-"""A client of `photorque serve`: measurements in, commands out, over UDP.
+"""A client of `photorque serve`: it receives measurements and sends commands over UDP.
 
-Needs the standard library alone; the file may be used without the rest of the package. The layout is
+Needs only the standard library; the file can be used without the rest of the package. The packet layout is
 that of photorque_serve.h.
 
     with Client() as client:                            # 127.0.0.1:4160
         for measurement in client.measurements():
             client.command([0.0, 0.0, -1e-4 * measurement.gyro_rad_s[2]])
 
-In lockstep every measurement with `wants_answer` has to be answered by one command.
+In lockstep every measurement with `wants_answer` must be answered by one command.
 """
 
 import socket
@@ -34,17 +34,17 @@ _CHECKSUM_AT = 12
 class Measurement:
     """One packet of the server; NaN if an instrument has no reading at this tick."""
 
-    tick: int  # when it was read
-    now_tick: int  # when it arrived
+    tick: int  # tick of the reading
+    now_tick: int  # tick of the arrival
     t_s: float
     attitude: tuple[float, ...]  # of the camera: w, x, y, z, lab from body
     gyro_rad_s: tuple[float, ...]  # body axes
-    yaw_rad: float  # azimuth of body x by the encoder
+    yaw_rad: float  # azimuth of body x from the encoder
     battery_current_A: float
     array_power_W: float
-    command_body_N_m: tuple[float, ...]  # that acted until now
-    command_sequence: int  # of the last command that acts, 0: none yet
-    command_sent_ns: int  # when that was sent, by this machine's monotonic clock
+    command_body_N_m: tuple[float, ...]  # torque applied until this tick
+    command_sequence: int  # of the acting command; 0: none yet
+    command_sent_ns: int  # sent_ns of that command, by this machine's monotonic clock
     true_attitude: tuple[float, ...]  # zero unless serve.send_truth
     true_rate_rad_s: tuple[float, ...]
     step_s: float
@@ -52,25 +52,25 @@ class Measurement:
     wants_answer: bool
     is_late: bool
     is_last: bool
-    refused: int  # packets of anybody that were refused so far
+    refused: int  # number of rejected packets so far, of all senders
     sequence: int
     sent_ns: int
 
     @property
     def heading_rad(self) -> float:
-        """The old name of yaw_rad."""
+        """Earlier name of yaw_rad."""
         return self.yaw_rad
 
 
 def seal(kind: int, sequence: int, tick: int, run: int, body: bytes = b"") -> bytes:
-    """A packet, its checksum filled in."""
+    """A packet with its checksum."""
     head = [MAGIC, VERSION, kind, _HEADER.size + len(body), 0, sequence, time.monotonic_ns(), tick, run]
     head[4] = zlib.crc32(_HEADER.pack(*head) + body)
     return _HEADER.pack(*head) + body
 
 
 def unseal(packet: bytes) -> tuple[int, Measurement] | None:
-    """(run, Measurement) of a server's packet; None for anything else."""
+    """(run, Measurement) of a server's packet; None for other packets."""
     if len(packet) != _SIZE:
         return None
     magic, version, kind, size, checksum, sequence, sent_ns, tick, run = _HEADER.unpack_from(packet)
@@ -99,7 +99,7 @@ class _Udp:
         try:
             self.socket.send(packet)
         except ConnectionRefusedError:
-            pass  # the server is not there, or not there any more
+            pass  # no server is listening
 
     def receive(self, timeout_s: float) -> bytes | None:
         self.socket.settimeout(timeout_s)
@@ -141,7 +141,7 @@ class Client:
         return packet
 
     def receive(self) -> Measurement | None:
-        """The next measurement; None after timeout_s without one. Sends hello until the first one."""
+        """The next measurement; None if none arrives within timeout_s. Sends hello until the first one."""
         end = time.monotonic() + self._timeout_s
         while time.monotonic() < end:
             if self._run == 0:
@@ -170,11 +170,11 @@ class Client:
             yield measurement
 
     def command(self, torque_body_N_m: Sequence[float]) -> None:
-        """Torque about the body's axes from now on."""
+        """Sets the torque about the body axes from now on [N m]."""
         self._last_command = self._send(COMMAND, _COMMAND.pack(*torque_body_N_m))
 
     def close(self) -> None:
-        """Leaves the run, which goes on without commands."""
+        """Leaves the run, which continues without commands."""
         if self._way is None:
             return
         if self._run:

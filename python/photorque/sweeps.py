@@ -11,7 +11,7 @@ from photorque._photorque import Experiment, power
 
 
 class Sweep:
-    """Figures of the runs of a grid: arrays with one dimension for each axis, in the order of `axes`."""
+    """Figures of the runs of a grid: arrays with one dimension per axis, in the order of `axes`."""
 
     def __init__(self, axes: dict[str, list[Any]], figures: dict[str, Any], standard_errors: dict[str, Any]):
         self.axes = axes
@@ -23,7 +23,7 @@ class Sweep:
         return f"<sweep over {axes}; figures {', '.join(self.figures)}>"
 
     def best(self, figure: str, smallest: bool = False) -> dict[str, Any]:
-        """The keys of the run with the largest (or smallest) figure."""
+        """Keys of the run with the largest (or smallest) figure."""
         values = self.figures[figure]
         at = numpy.unravel_index((numpy.nanargmin if smallest else numpy.nanargmax)(values), values.shape)
         return {key: values_of[int(i)] for (key, values_of), i in zip(self.axes.items(), at)}
@@ -45,13 +45,11 @@ def sweep(
     figures: Sequence[str] | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> Sweep:
-    """Runs every combination of the keys in `axes`, the last running fastest: any function of an experiment
-    that gives figures (trace, power, torque_map, propagate, a lambda with other options).
+    """Runs every combination of the keys in `axes`; the last axis varies fastest. `run` is any function of an
+    experiment that returns figures (trace, power, torque_map, propagate, a lambda with other options).
 
-    `figures` are names in its `figures` (all, if left out). The first error ends it. Nothing is kept on
-    disk: for plans of many runs, random plans, means, constraints and searches there are the commands
-    `sweep` and `optimise`.
-    """
+    `figures` are names in its `figures` (default: all). The first error ends the sweep. Nothing is stored on disk:
+    for many runs, random plans, means, constraints and searches use the commands `sweep` and `optimise`."""
     grid = {key: list(values) for key, values in axes.items()}
     shape = tuple(len(values) for values in grid.values())
     values: dict[str, Any] = {}

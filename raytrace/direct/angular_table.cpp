@@ -19,7 +19,8 @@ double angle_of(double rise) {
   return 2.0 * std::asin(std::sqrt(std::clamp(0.5 * rise, 0.0, 1.0)));
 }
 
-// The integral over step i of the cubic that interpolates even values, in steps.
+// Integral over step i, in units of one step, of the cubic through the nearest four values at equal
+// steps.
 double step_integral(const std::vector<double>& v, size_t i) {
   const size_t last = v.size() - 1;
   const auto at_end = [&](size_t a, size_t b, size_t c, size_t d) {
@@ -35,7 +36,7 @@ double step_integral(const std::vector<double>& v, size_t i) {
 AngularTable::AngularTable(const Emitter& emitter, const std::vector<double>& edges_rad) {
   constexpr int most_splits = 6;
   double low_rad = 0.0;
-  std::vector<size_t> ends;  // of the intervals between two edges
+  std::vector<size_t> ends;  // index of the last segment before each edge
   for (const double high_rad : edges_rad) {
     add_segment(emitter, low_rad, high_rad, most_splits);
     ends.push_back(segments_.size() - 1);
@@ -50,12 +51,14 @@ AngularTable::AngularTable(const Emitter& emitter, const std::vector<double>& ed
   find_angles(edges_rad);
 }
 
-// Halves the interval while its even steps do not follow the intensity.
+// Tabulates the intensity between two angles. Halves the interval, at most `splits` times, until
+// the interpolated intensity agrees with the emitter's.
 void AngularTable::add_segment(const Emitter& emitter, double low_rad, double high_rad,
                                int splits) {
-  constexpr double inside = 1.0 - 1e-14;  // a profile may end at the edge itself
+  // Stays off the edges, because a profile may jump exactly there.
+  constexpr double inside = 1.0 - 1e-14;
   constexpr double tolerance = 1e-7;
-  constexpr size_t stride = 17;  // intervals between two that are looked at
+  constexpr size_t stride = 17;  // tests the interpolation in every 17th interval
   const auto intensity = [&](double rise) {
     const double within = std::clamp(angle_of(rise), low_rad * (2.0 - inside), high_rad * inside);
     return emitter.relative_intensity(within);
@@ -81,7 +84,7 @@ void AngularTable::add_segment(const Emitter& emitter, double low_rad, double hi
   segments_.push_back(std::move(segment));
 }
 
-// Makes the flux of all directions 1, and sums it from the axis.
+// Normalises the total flux to 1 and fills the cumulative flux, starting at the axis.
 void AngularTable::normalise() {
   double flux = 0.0;
   for (Segment& segment : segments_) {
@@ -97,7 +100,7 @@ void AngularTable::normalise() {
   }
 }
 
-// Sums the table from the edge inwards: the flux outside an angle is then small and exact.
+// Sums from the edge inwards, so that the small flux outside an angle keeps its relative precision.
 void AngularTable::find_angles(const std::vector<double>& edges_rad) {
   constexpr double negligible = 1e-9;
   double outside = 0.0, brightest = 0.0, steepest = 0.0;
@@ -118,7 +121,7 @@ void AngularTable::find_angles(const std::vector<double>& edges_rad) {
       }
       outside += ring;
       brightest = std::max(brightest, low);
-      // Per angle: dI/dθ = sin θ dI/drise.
+      // Slope per angle: dI/dθ = sin θ dI/drise.
       const double sine = std::sqrt((rise + 0.5 * step) * (2.0 - rise - 0.5 * step));
       steepest = std::max(steepest, std::abs(high - low) / step * sine);
     }
@@ -126,7 +129,7 @@ void AngularTable::find_angles(const std::vector<double>& edges_rad) {
   mean_cosine_ /= outside;
   mean_square_cosine_ /= outside;
   steepest_rad_ = std::min(half_flux_rad_, brightest / steepest);
-  // The edge of all light is taken where hardly any is left.
+  // Edges beyond the reach are moved to it: hardly any light is left there.
   for (const double edge_rad : edges_rad) {
     const double end_rad = std::min(edge_rad, reach_rad_);
     edge_slopes_.push_back(end_rad < 1.57 ? std::tan(end_rad)

@@ -9,49 +9,48 @@
 
 namespace photorque {
 
-// Immutable. Angles enter as the rise 1 − cos θ or as the slope tan θ.
+// Immutable. An angle θ is given as the rise 1 − cos θ or as the slope tan θ.
 class AngularTable {
  public:
-  // `edges_rad` as in UniformAperture, at least one, the last > 0.
+  // `edges_rad` as in UniformAperture: at least one angle, in rising order, the last one > 0.
   AngularTable(const Emitter& emitter, const std::vector<double>& edges_rad);
   bool operator==(const AngularTable&) const = default;
 
-  // Intensity per flux [1/sr]; zero beyond the last edge. Interpolated to 1e-7 of the largest of
-  // its interval between two edges.
+  // Intensity per flux [1/sr]; zero beyond the last edge. The interpolation error is 1e-7 of the
+  // largest intensity between the two neighbouring edges.
   double intensity_per_flux(double rise) const {
     const Segment* segment = segment_at(rise);
     return segment ? segment->intensity(rise) : 0.0;
   }
-  // Fraction of the flux within the angle, in [0, 1]: the integral of the above.
+  // Fraction of the flux within the angle, in [0, 1]: the integral of the intensity.
   double flux_within(double rise) const {
     const Segment* segment = segment_at(rise);
     return segment ? segment->flux(rise) : 1.0;
   }
 
-  // Tangents of the angles where the intensity jumps or changes its law, or hardly any light is
-  // left; rising, infinite for a right angle.
+  // Tangents of the angles where the intensity jumps or changes its formula, and of the angle
+  // beyond which hardly any light is left. In rising order; infinite for a right angle.
   const std::vector<double>& edge_slopes() const { return edge_slopes_; }
-  // The intensity has no jump, also not where it ends.
+  // Whether the intensity has no jump, including at its outer end.
   bool fades_out() const { return fades_out_; }
-  // Half-angle beyond which less than 1e-9 of the flux goes.
+  // Half-angle that contains all but 1e-9 of the flux.
   double reach_rad() const { return reach_rad_; }
-  // Half-angle that holds half of the flux.
+  // Half-angle that contains half of the flux.
   double half_flux_rad() const { return half_flux_rad_; }
-  // Angle over which the intensity falls by its maximum where it falls steepest, jumps aside; at
-  // most half_flux_rad().
+  // Maximum intensity divided by its steepest slope (jumps excluded); at most half_flux_rad().
   double steepest_rad() const { return steepest_rad_; }
-  // Mean cosine of all directions and the mean of its square.
+  // Mean cosine over all directions, and mean square of the cosine, both weighted by flux.
   double mean_cosine() const { return mean_cosine_; }
   double mean_square_cosine() const { return mean_square_cosine_; }
 
  private:
-  // Intensity and flux on [low, high] of the rise, at even steps.
+  // Intensity and flux on [low, high] of the rise, at equal steps.
   struct Segment {
     double low, high, per_step;
     std::vector<double> value, within;
     bool operator==(const Segment&) const = default;
 
-    // The cubic through the four nearest values.
+    // Cubic through the four nearest values.
     double intensity(double rise) const {
       const double place = (rise - low) * per_step;
       const auto last = static_cast<int>(value.size()) - 3;
@@ -62,7 +61,7 @@ class AngularTable {
       return 0.5 * left * far * (right * v[0] - t * v[1]) +
              (1.0 / 6.0) * t * right * (left * v[2] - far * v[-1]);
     }
-    // The cubic with the values and slopes of the flux at both ends of a step.
+    // Cubic with the values and slopes of the flux at both ends of a step.
     double flux(double rise) const {
       const double place = (rise - low) * per_step;
       const int last = static_cast<int>(value.size()) - 2;
@@ -95,7 +94,7 @@ class AngularTable {
   double mean_cosine_ = 0.0, mean_square_cosine_ = 0.0;
 };
 
-// 1 − cos θ where tan² θ = `slope_squared`; keeps its precision near the axis.
+// 1 − cos θ for tan² θ = `slope_squared`; keeps its relative precision near the axis.
 inline double rise_at_slope(double slope_squared) {
   const double secant = std::sqrt(1.0 + slope_squared);
   return slope_squared / (secant * (1.0 + secant));

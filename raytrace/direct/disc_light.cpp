@@ -16,7 +16,8 @@ double tail_integral(double radius_m, double distance_m, double half_sine) {
   const double a = radius_m * radius_m + distance_m * distance_m;
   const double b = 2.0 * radius_m * distance_m;
   const double half_turn = std::asin(half_sine), turn = 2.0 * half_turn;
-  constexpr double flat = 0.05;  // the closed form cancels where u hardly changes
+  // Below this ratio u is nearly constant and the closed form loses digits.
+  constexpr double flat = 0.05;
   if (b < flat * a) {
     return integrate(
         gauss_8,
@@ -72,13 +73,13 @@ double DiscLight::irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const
   return -normal.z() * factors[0] - away * factors[1];
 }
 
-// The part on the aperture of the circle about a point's foot that is seen under one angle.
+// The arc on the aperture of the circle about a point's foot that the point sees under one angle.
 struct DiscLight::Arc {
-  double cosine, sine;         // of the angle from the axis
-  double half_rad, half_sine;  // half of the arc's angle α about the foot, sin α
+  double cosine, sine;         // of the angle θ from the axis
+  double half_rad, half_sine;  // half of the arc's angle α about the foot; sin α
 };
 
-// Σ over the aperture of `density` per solid angle and flux, times the exitance.
+// Integral over the aperture of `density` (per solid angle and flux), times the exitance.
 template <typename Density>
 auto DiscLight::over_aperture(double distance_m, double height_m, const Density& density) const {
   using Value = std::decay_t<decltype(density(Arc{}))>;
@@ -97,7 +98,7 @@ auto DiscLight::over_aperture(double distance_m, double height_m, const Density&
     const double sine = 2.0 * half_sine * half_cosine;
     const double u = middle - width + 2.0 * width * half_sine * half_sine;
     if (!(u > 0.0)) return Value::Zero();
-    // Half of α by its sine or cosine, neither of which cancels.
+    // Half of α from its sine or its cosine. Neither form loses digits by cancellation.
     const double part =
         std::min(1.0, d > radius ? radius * sine / std::sqrt(4.0 * u * d)
                                  : half_sine * std::sqrt((u + d + radius) / (2.0 * u)));
@@ -163,8 +164,8 @@ ArrivingLight DiscLight::arriving(const Vec3& point_m, const Vec3& normal) const
 }
 
 ArrivingLight DiscLight::arriving_of(const Flow& flow, const Vec3& point_m, const Vec3& normal) {
-  // The flow of momentum is a tensor: its components along the axis and away from it, and the one
-  // around it.
+  // The momentum flow is a symmetric tensor. It has components along the axis, away from the axis
+  // and around it.
   const double d = std::hypot(point_m.x(), point_m.y());
   const Vec3 axis = Vec3::UnitZ();
   const Vec3 away = d > 0.0 ? Vec3(point_m.x() / d, point_m.y() / d, 0.0) : Vec3(Vec3::UnitX());
@@ -187,7 +188,7 @@ Integral<double> DiscLight::mean_within_W_m2(double distance_m, double height_m,
     const double sine2 = 4.0 * half_sine * half_sine * half_cosine2;
     return angles_->flux_within(rise_at_slope(u2 / (h * h))) * sine2 / u2;
   };
-  // ω where u is this.
+  // sin(ω/2) for a given u.
   const auto half_sine_at = [&](double u) {
     return std::sqrt(std::clamp((u - gap) * (u + gap) / product, 0.0, 1.0));
   };
@@ -228,7 +229,7 @@ std::vector<double> DiscLight::all_slopes() const {
 
 namespace {
 
-// a s² + 2 b s + c along a line: d² − (R ± h tan θ)² with its sign.
+// a s² + 2 b s + c = d² − (R ± h tan θ)² along a line; `slope` carries the sign.
 struct Quadratic {
   double a, b, c;
 
@@ -240,7 +241,7 @@ struct Quadratic {
   }
   Quadratic(double a_, double b_, double c_) : a(a_), b(b_), c(c_) {}
   double discriminant() const { return b * b - a * c; }
-  // Adds the roots in (0, 1).
+  // Appends the roots in (0, 1).
   void add_roots(std::vector<double>& roots) const {
     if (!(discriminant() > 0.0)) return;
     const double q = -(b + std::copysign(std::sqrt(discriminant()), b));
@@ -273,7 +274,7 @@ std::vector<double> DiscLight::tangent_lines(const Vec3& corner_m, const Vec3& a
   std::vector<double> lines;
   for (const double slope : all_slopes()) {
     for (const double side : {-slope, slope}) {
-      // Two kinks of a line meet at a zero of the discriminant, which is quadratic in t.
+      // Two kinks on a line meet where the discriminant vanishes. It is quadratic in t.
       const auto discriminant = [&](double t) {
         return Quadratic(corner_m + t * across_m, along_m, radius_m(), side).discriminant();
       };
@@ -316,7 +317,7 @@ Integral<double> DiscLight::along_edge_W(const Vec3& from_m, const Vec3& to_m,
 
 Integral<double> DiscLight::power_through_W(std::span<const Vec3> polygon_m,
                                             double tolerance_W) const {
-  // Light is in front of the aperture's plane only.
+  // The light exists only in front of the aperture's plane, so the polygon is clipped there.
   std::vector<Vec3> corners;
   for (size_t i = 0; i < polygon_m.size(); ++i) {
     const Vec3 &from = polygon_m[i], &to = polygon_m[(i + 1) % polygon_m.size()];

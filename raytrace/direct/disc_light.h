@@ -1,28 +1,29 @@
-// Light from a uniform aperture straight onto points and surfaces, without rays.
+// Direct light from a uniform aperture on points and surfaces, without rays.
 //
-// Every point of a disc of area A = πR² shines with the same intensity per flux f(θ) [1/sr] about
-// its axis. A point p at height h above the disc's plane and distance d from its axis sees, under
-// the angle θ, the circle of radius u = h tan θ about its foot; the part of it on the disc is an
-// arc of half-angle α. Hence the irradiance on a surface of normal n is a single integral,
+// Every point of a disc of area A = πR² radiates with the same intensity per flux f(θ) [1/sr] about
+// its axis. A point p lies at height h above the disc's plane and at distance d from its axis.
+// Under the angle θ it sees the circle of radius u = h tan θ about its foot; the part of this
+// circle on the disc is an arc of half-angle α. Hence the irradiance on a surface of normal n is a
+// single integral,
 //
 //   E = Φ/A ∫ f(θ) (u cos²θ/h²) [2α (−n_z cos θ) − 2 sin α sin θ n·p̂] du,
 //
-// with p̂ the unit vector from the axis to p's foot. Near the ends of the arc's range α goes like a
-// square root, which u = m − w cos ψ (m = max(R, d), w = min(R, d)) takes out.
+// with p̂ the unit vector from the axis to p's foot. Near the ends of the arc's range α behaves
+// like a square root. The substitution u = m − w cos ψ (m = max(R, d), w = min(R, d)) removes it.
 //
-// The mean irradiance within the circle of radius d about the axis at height h needs only the flux
-// F within an angle: light under the angle θ is the disc displaced by u, and the integral by parts
-// of the area that two circles share over dF leaves, with u² = R² + d² − 2Rd cos ω,
+// The mean irradiance within the circle of radius d about the axis at height h depends only on the
+// flux F within an angle. Light under the angle θ is the disc displaced by u. Integrating the
+// common area of the two circles over dF by parts gives, with u² = R² + d² − 2Rd cos ω,
 //
 //   M(h, d) = (2Φ/π²) ∫₀^π F(tan θ = u/h) sin²ω/u² dω.
 //
-// Vector irradiance in empty space has no divergence and M d²/2 is its stream function, so that the
-// power on any surface follows from M along its outline alone:
+// Vector irradiance in empty space has no divergence, and M d²/2 is its stream function. Hence the
+// power on any surface follows from M along its outline:
 //
 //   P = ½ ∮ M(h, d) (x dy − y dx).
 //
-// Edges of the beam are kinks of M, at d = |R ± h tan θ|, which a straight side of a surface meets
-// at the roots of quadratics: the function between them is smooth.
+// M has kinks at the edges of the beam, d = |R ± h tan θ|, and is smooth between them. Along a
+// straight side of a surface the kinks are roots of quadratics.
 #pragma once
 
 #include <optional>
@@ -35,20 +36,20 @@
 
 namespace photorque {
 
-// The light that arrives at a point of a surface.
+// Light that arrives at a point of a surface.
 struct ArrivingLight {
   double irradiance_W_m2 = 0.0;
-  // Its directions (unit vectors of travel), weighed by the irradiance that each brings. Over the
-  // speed of light: the momentum that arrives per area and time.
+  // Sum of the directions of travel (unit vectors), weighted by the irradiance from each. Divided
+  // by the speed of light it is the momentum that arrives per area and time.
   Vec3 momentum_W_m2 = Vec3::Zero();
 };
 
-// An emitter with its aperture, made ready. Immutable; must not outlive the emitter.
+// An emitter and its aperture with precomputed tables. Immutable; the emitter must outlive it.
 class DiscLight {
  public:
   DiscLight(const Emitter& emitter, UniformAperture aperture);
 
-  // Gives the same light in the same directions, to all digits.
+  // Whether both give the same light in the same directions, to the last digit.
   bool same_as(const DiscLight& other) const {
     return aperture_ == other.aperture_ && angles_ == other.angles_;
   }
@@ -56,70 +57,71 @@ class DiscLight {
   const Emitter& emitter() const { return emitter_; }
   double radius_m() const { return aperture_.radius_m; }
   double exitance_W_m2() const { return aperture_.exitance_W_m2; }
-  bool parallel() const;  // an infinite aperture
-  // Points not higher than this above the aperture count as behind it.
+  bool parallel() const;  // whether the aperture is infinite
+  // Points at or below this height above the aperture count as behind it.
   double lowest_m() const { return 1e-9 * aperture_.radius_m; }
-  // Only if not collimated.
+  // Requires !collimated().
   const AngularTable& angles() const { return *angles_; }
   bool collimated() const { return !angles_; }
-  // As AngularTable; 0 for collimated light.
+  // See AngularTable; 0 (false) for collimated light.
   double reach_rad() const { return angles_ ? angles_->reach_rad() : 0.0; }
   double half_flux_rad() const { return angles_ ? angles_->half_flux_rad() : 0.0; }
   bool fades_out() const { return angles_ && angles_->fades_out(); }
 
-  // Irradiance [W/m²] at a point of the emitter's frame on a surface of unit normal, nothing in
-  // between. Every ray that arrives must come from the front side, see lights_front(). Relative
-  // error below 1e-7.
+  // Unobstructed irradiance [W/m²] at a point of the emitter's frame on a surface of unit normal.
+  // Every arriving ray must come from the front side, see lights_front(). Relative error below
+  // 1e-7.
   double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const;
 
-  // The arriving light with its momentum, in the emitter's frame.
+  // Unobstructed light at a point, with its momentum, in the emitter's frame.
   ArrivingLight arriving(const Vec3& point_m, const Vec3& normal) const;
 
-  // The six components of the flow of power and momentum at a height and a distance from the axis:
-  // A and B as of factors_W_m2(), then of the symmetric flow of momentum (times c) along the axis,
-  // between axis and away from it, away from it, and around it. Not for parallel light.
+  // Six components of the flow of power and momentum at a height and a distance from the axis: A
+  // and B of factors_W_m2(); then the symmetric momentum tensor (times c): axial–axial,
+  // axial–radial, radial–radial, azimuthal–azimuthal. Not for parallel light.
   using Flow = Eigen::Array<double, 6, 1>;
   Flow flow_W_m2(double distance_m, double height_m) const;
-  // The light that arrives at a point with this flow.
+  // Light that arrives at a point with this flow.
   static ArrivingLight arriving_of(const Flow& flow, const Vec3& point_m, const Vec3& normal);
 
-  // The irradiances A on a surface normal to the axis and B on one that looks at the axis, at a
-  // height and a distance from it, such that E = −n_z A − n·p̂ B. Not for parallel light.
+  // Irradiance A on a surface normal to the axis and B on a surface that faces the axis, at a
+  // height and a distance from it: E = −n_z A − n·p̂ B. Not for parallel light.
   Eigen::Array2d factors_W_m2(double distance_m, double height_m) const;
 
-  // Power through a flat polygon in the emitter's frame at any inclination, nothing in between,
-  // every ray through the same side; ≥ 0 but for the error, which is estimated and aimed to be
-  // below `tolerance_W` (> 0). Not for parallel light.
+  // Unobstructed power [W] through a flat polygon in the emitter's frame, at any inclination. All
+  // rays must pass through the same side. The estimated error is aimed to be below `tolerance_W`
+  // (> 0); the value is ≥ 0 within its error. Not for parallel light.
   Integral<double> power_through_W(std::span<const Vec3> polygon_m, double tolerance_W) const;
 
-  // The contribution of a side from one corner to the next to such a power, both in front of the
-  // aperture; counted against the clock as seen from where the light goes.
+  // Contribution of one side of the polygon to power_through_W(). Both corners are in front of the
+  // aperture. The polygon runs counter-clockwise as seen from the side that the light travels to.
   Integral<double> along_edge_W(const Vec3& from_m, const Vec3& to_m, double tolerance_W) const;
 
-  // Fractions of the way between two points at which the irradiance has a kink, where the circle
-  // about the axis touches the rim of an edge's light; rising, in (0, 1). With them places that lie
-  // likewise to angles at which the beam has fallen a little, by half, and almost altogether.
+  // Positions on the segment between two points, in (0, 1) and rising, at which the irradiance has
+  // a kink: the circle about the axis touches the rim of an edge's light. The list also contains
+  // the corresponding positions for the angles at which the beam has fallen slightly, by half, and
+  // almost to zero.
   std::vector<double> kinks_along(const Vec3& from_m, const Vec3& to_m) const;
-  // The t in (0, 1), rising, of the lines corner + t · across + [0, 1] · along at which two kinks
-  // meet.
+  // Values of t in (0, 1), rising, for which two kinks meet on the line corner + t · across + [0,
+  // 1] · along.
   std::vector<double> tangent_lines(const Vec3& corner_m, const Vec3& along_m,
                                     const Vec3& across_m) const;
 
-  // Mean irradiance normal to the axis within the circle of radius d = `distance_m` about it. With
-  // an error aimed to be below `tolerance_W_m2` (> 0). Not for parallel light.
+  // Mean irradiance normal to the axis within the circle of radius `distance_m` about it. The error
+  // is aimed to be below `tolerance_W_m2` (> 0). Not for parallel light.
   Integral<double> mean_within_W_m2(double distance_m, double height_m,
                                     double tolerance_W_m2) const;
 
-  // The order of magnitude of the irradiance at a height where there is light.
+  // Order of magnitude of the irradiance in the lit region at a height.
   double typical_W_m2(double height_m) const;
 
-  // True when every ray of the beam meets a surface of this normal from its front (all but 1e-9 of
-  // the flux).
+  // Whether the beam, except 1e-9 of its flux, meets a surface of this normal from its front.
   bool lights_front(const Vec3& normal) const;
 
  private:
-  std::vector<double> hard_slopes() const;  // tangents of its edges
-  std::vector<double> all_slopes() const;   // and of other angles, see kinks_along()
+  std::vector<double> hard_slopes() const;  // tangents of the beam's edges
+  // tangents of the edges and of the other angles of kinks_along()
+  std::vector<double> all_slopes() const;
   std::vector<double> kinks_at(std::span<const double> slopes, const Vec3& from_m,
                                const Vec3& to_m) const;
   double typical_per_exitance(double height_m) const;
@@ -130,7 +132,7 @@ class DiscLight {
   const Emitter& emitter_;
   UniformAperture aperture_;
   std::optional<AngularTable> angles_;
-  double parallel_irradiance_W_m2_ = 0.0;  // of parallel light on a plane normal to the axis
+  double parallel_irradiance_W_m2_ = 0.0;  // on a plane normal to the axis; 0 if not parallel
 };
 
 }  // namespace photorque

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double negligible = 1e-8;
 
-// Terms of a series whose next falls by `ratio`: heights on a scale of their middle.
+// Number of terms of a series in height whose terms fall by `ratio` each, at most 8.
 size_t degrees_for(double ratio) {
   constexpr size_t most = 8;
   if (ratio < 1e-9) return 1;
@@ -19,8 +19,8 @@ size_t degrees_for(double ratio) {
   return std::min(static_cast<size_t>(wanted) + 1, most);
 }
 
-// Row i gives the value at the i-th of `count` even places of [0, 1], both ends among them, of the
-// polynomial through values at n Chebyshev points, rising.
+// Matrix of n columns. Row i gives the value at the i-th of `count` equally spaced places of [0, 1]
+// (both ends included) of the polynomial through values at n Chebyshev points, which rise.
 Eigen::MatrixXd values_at_even_places(size_t n, size_t count) {
   const auto places = static_cast<Eigen::Index>(count), terms = static_cast<Eigen::Index>(n);
   Eigen::MatrixXd term(places, terms);
@@ -38,7 +38,8 @@ Eigen::MatrixXd values_at_even_places(size_t n, size_t count) {
 template <int Count>
 class FactorTable<Count>::Series {
  public:
-  // As many points of the root as the light needs; none if too many.
+  // Doubles the number of Chebyshev points in the root until the series converges; empty if it
+  // needs more than 96 points.
   static std::optional<Series> of(const FactorTable& table, const Function& factors, int threads) {
     constexpr size_t fewest = 24, most = 96;
     const size_t degrees =
@@ -52,7 +53,7 @@ class FactorTable<Count>::Series {
     return std::nullopt;
   }
 
-  // The factor of one half at even steps and heights.
+  // Values of one factor on one half of a piece, at equal steps and heights.
   Eigen::MatrixXd values(size_t half, size_t factor, const Eigen::MatrixXd& at_steps,
                          const Eigen::MatrixXd& at_rows) const {
     return at_steps * value_[half * Count + factor] * at_rows.transpose();
@@ -79,7 +80,7 @@ class FactorTable<Count>::Series {
     });
   }
 
-  // The last terms of the series in the root are small, at the first height.
+  // Whether the last terms of the series in the root are negligible, at the first height.
   bool converged() const {
     const Eigen::MatrixXd last = chebyshev_coefficients(points_).bottomRows(3);
     double largest = 0.0, left = 0.0;
@@ -91,10 +92,11 @@ class FactorTable<Count>::Series {
   }
 
   size_t points_, degrees_;
-  std::vector<Eigen::MatrixXd> value_;  // by half and factor: points of the root by heights
+  std::vector<Eigen::MatrixXd> value_;  // [half · Count + factor]: points of the root by heights
 };
 
-// Empty if they cross within the range of heights, or if the light extends to the side.
+// Edges of the beam in rising order. Empty if they cross within the range of heights, or if the
+// light extends too far to the side.
 template <int Count>
 std::optional<std::vector<typename FactorTable<Count>::Kink>> FactorTable<Count>::kinks_of(
     const DiscLight& light, double low_m, double high_m) {
@@ -170,7 +172,8 @@ template <int Count>
 bool FactorTable<Count>::agrees_with(const Function& factors) {
   constexpr size_t tests = 19;  // per half
   double largest = 0.0, worst = 0.0;
-  // In the middle of the first interval of heights, where the cubic is worst, and of another.
+  // Tests the middle of the first interval of heights, where the cubic is least accurate, and the
+  // middle of one more interval.
   const size_t intervals = std::max<size_t>(rows_ - 1, 1);
   for (const size_t interval : {size_t{0}, 2 * intervals / 3}) {
     const double h = low_m_ + (static_cast<double>(interval) + 0.5) /

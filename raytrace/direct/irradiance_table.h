@@ -1,11 +1,11 @@
-// The irradiance of a disc light (disc_light.h) at many places, from tables over height and
-// distance from its axis.
+// Irradiance of a disc light (disc_light.h) at many points, interpolated from tables over height
+// and distance from its axis.
 //
-// Its factors have kinks only where the circle that an edge of the beam draws touches the rim of
-// the aperture, at d = |R ± h tan θ|. Between two of these, powers of half integers of the distance
-// to them remain, which its square root makes smooth: the table holds values at even steps of the
-// root and of h, and cubics lie between them. The values come from few of the light's integrals, by
-// Chebyshev series in root and height.
+// The factors A and B have kinks only where the circle drawn by an edge of the beam touches the rim
+// of the aperture, at d = |R ± h tan θ|. Between two kinks the factors contain half-integer powers
+// of the distance to them. They are smooth in the square root of this distance. The table stores
+// values at equal steps of this root and of h, and interpolates with cubics. The values come from a
+// few of the light's integrals through Chebyshev series in root and height.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@
 
 namespace photorque {
 
-// `Count` factors at a time: 2 or 6.
+// Table of `Count` factors (2 or 6).
 template <int Count>
 class FactorTable {
  public:
@@ -28,16 +28,16 @@ class FactorTable {
   // Arguments: distance from the axis and height [m].
   using Function = std::function<Factors(double, double)>;
 
-  // A table of the `factors` of `light` for heights in [low_m, high_m], low_m > 0. Empty if no
-  // table agrees with them to `tolerance` of the largest at all test points, because kinks cross
-  // within these heights or light reaches the side. Equal bits with any `threads`.
+  // Table of the `factors` of `light` for heights in [low_m, high_m], low_m > 0. Empty if no table
+  // agrees with them to `tolerance` of the largest value at all test points: kinks cross within
+  // these heights, or light reaches the side. The result has the same bits for any `threads`.
   static std::optional<FactorTable> make(const DiscLight& light, const Function& factors,
                                          double low_m, double high_m, int threads);
   static constexpr double tolerance = Count == 2 ? 3e-8 : 1e-6;
 
-  // Largest difference that was found, half-way between steps.
+  // Largest error found at the test points half-way between steps.
   double error() const { return error_; }
-  // For these heights; zero where no light comes.
+  // Factors at a height within the table's range; zero outside the beam.
   Factors at(double distance_m, double height_m) const {
     const double h = height_m, d = distance_m;
     if (d >= kinks_.back().at(h)) return Factors::Zero();
@@ -70,10 +70,9 @@ class FactorTable {
   }
 
  private:
-  using Four = Eigen::Array<double, 4 * Count, 1>;  // the factors at four neighbours
+  using Four = Eigen::Array<double, 4 * Count, 1>;  // factors at four neighbours
 
-  // Weights of four neighbours among values at the places 0 … `last` (≥ 3) of the cubic through
-  // them.
+  // Weights of four neighbouring values, at the places 0 … `last` (≥ 3), of the cubic through them.
   struct Cubic {
     size_t first;
     std::array<double, 4> weight;
@@ -87,13 +86,12 @@ class FactorTable {
                 left * t * right / 6.0};
     }
   };
-  // A distance from the axis that moves with the height.
+  // A distance from the axis that is linear in the height.
   struct Kink {
     double at_zero_m, slope;
     double at(double height_m) const { return at_zero_m + slope * height_m; }
   };
-  // The factors at Chebyshev points: of the root by column, of the height by row, each half a
-  // block; and the values of the series' terms at the steps of a half.
+  // The factors at Chebyshev points of root and height, per half of a piece.
   class Series;
 
   FactorTable(double low_m, double high_m, std::vector<Kink> kinks)
@@ -103,25 +101,25 @@ class FactorTable {
   size_t halves() const { return 2 * (kinks_.size() - 1); }
   void fill(const Series& series, size_t steps, size_t rows);
   bool agrees_with(const Function& factors);
-  // The distance of a place in the table, a fraction of half 2 · piece or 2 · piece + 1.
+  // Distance from the axis of a place in the table: a fraction of half 2 · piece or 2 · piece + 1.
   double distance_m(size_t half, double fraction, double height_m) const;
 
-  double low_m_, high_m_;  // of the heights
+  double low_m_, high_m_;  // range of heights
   size_t steps_ = 0;       // per half of a piece
-  size_t rows_ = 1;        // heights
+  size_t rows_ = 1;        // number of heights
   double rows_per_m_ = 0.0;
   double error_ = 0.0;
-  std::vector<Kink> kinks_;     // rising, from the axis to where the light ends
-  std::vector<double> values_;  // by half, height, place and factor
+  std::vector<Kink> kinks_;     // rising, from the axis to the end of the light
+  std::vector<double> values_;  // [half][height][place][factor]
 };
 
 extern template class FactorTable<2>;
 extern template class FactorTable<6>;
 
-// The irradiance for many points. On a surface of normal n at height h above the aperture and
-// distance d from its axis
+// Irradiance at many points. On a surface of normal n at height h above the aperture and distance d
+// from its axis,
 //   E = −n_z A(h, d) − n·p̂ B(h, d),
-// p̂ pointing away from the axis.
+// with p̂ pointing away from the axis.
 class IrradianceTable {
  public:
   // See FactorTable::make().
@@ -135,10 +133,10 @@ class IrradianceTable {
   }
   static constexpr double tolerance = FactorTable<2>::tolerance;
 
-  // Largest difference from the light that was found, half-way between steps [W/m²].
+  // Largest error found half-way between steps [W/m²].
   double error_W_m2() const { return factors_.error(); }
 
-  // As DiscLight::irradiance_W_m2(), for points of these heights.
+  // See DiscLight::irradiance_W_m2(); heights within the table's range.
   double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const {
     const double d = std::sqrt(point_m.x() * point_m.x() + point_m.y() * point_m.y());
     const double away = d > 0.0 ? (normal.x() * point_m.x() + normal.y() * point_m.y()) / d : 0.0;
@@ -152,9 +150,10 @@ class IrradianceTable {
   FactorTable<2> factors_;
 };
 
-// A table of irradiance and momentum together.
+// Table of irradiance and momentum together.
 class MomentumTable {
  public:
+  // See FactorTable::make().
   static std::optional<MomentumTable> make(const DiscLight& light, double low_m, double high_m,
                                            int threads) {
     auto factors = FactorTable<6>::make(
@@ -165,7 +164,7 @@ class MomentumTable {
 
   double error_W_m2() const { return factors_.error(); }
 
-  // As DiscLight::arriving(), for points of these heights.
+  // See DiscLight::arriving(); heights within the table's range.
   ArrivingLight arriving(const Vec3& point_m, const Vec3& normal) const {
     const double d = std::sqrt(point_m.x() * point_m.x() + point_m.y() * point_m.y());
     return DiscLight::arriving_of(factors_.at(d, point_m.z()), point_m, normal);

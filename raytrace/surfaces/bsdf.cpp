@@ -19,14 +19,14 @@ OpticalSurface grey_surface(std::string name, double specular, double diffuse, d
 
 namespace {
 
-// Axes of a hit; z is the normal on the lit side.
+// Axes at a hit; z is the normal on the lit side.
 struct HitFrame {
   Vec3 x, y, z;
 
   Vec3 to_outer(const Vec3& local) const { return local.x() * x + local.y() * y + local.z() * z; }
 };
 
-// The frame that lobes are stated in: x in the plane of incidence.
+// The frame of the lobes: x lies in the plane of incidence.
 HitFrame plane_of_incidence(const Incidence& incidence) {
   const Vec3& z = incidence.normal;
   const Vec3 along = -incidence.direction - incidence.cosine * z;
@@ -57,8 +57,8 @@ Vec3 mirrored(const Incidence& incidence) {
   return incidence.direction - 2.0 * incidence.direction.dot(n) * n;
 }
 
-// The component's own lobe; null for a mirror, Lambert's law and light that goes straight on or
-// back.
+// Lobe of a component. Null for a mirror, for Lambert's law, and for transmitted and retroreflected
+// light.
 const Lobe* lobe_of(const OpticalSurface& surface, Component component) {
   if (!surface.bsdf) return nullptr;
   if (component == Component::specular) return surface.bsdf->specular.get();

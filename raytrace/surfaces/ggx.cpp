@@ -32,7 +32,8 @@ double Ggx::distribution(const Vec3& normal) const {
 }
 
 Vec3 Ggx::visible_normal(const Vec3& towards_light, double u, double v) const {
-  // Stretched so that the facets are those of a hemisphere, seen as a disc cut along its middle.
+  // Scale the frame: the facets become those of a hemisphere, seen as a disc that is cut along
+  // its middle.
   const Vec3 seen =
       Vec3(alpha * towards_light.x(), alpha * towards_light.y(), towards_light.z()).normalized();
   const double across = std::hypot(seen.x(), seen.y());
@@ -58,8 +59,9 @@ double Ggx::once_reflected_1_sr(const Vec3& towards_light, const Vec3& out) cons
 }
 
 Ggx::Moments Ggx::moments(double cosine, const std::function<double(double)>& of_facet) const {
-  // The rim of the disc of visible facets holds the long tail of steep ones: panels halve towards
-  // it. Where many facets reflect below the horizon, the bend there needs more points.
+  // Steep facets lie at the rim of the disc of visible facets and form a long tail, so each panel
+  // has half the width of the one before. Rough surfaces, where many facets reflect below the
+  // horizon, have a kink there and need more points.
   constexpr size_t panels = 11, angles = 48;
   const size_t radii = alpha < 0.2 ? 8 : 24;
   const Vec3 in = direction_at(cosine);

@@ -15,7 +15,7 @@ double refracted_cosine(double cosine, double index) {
 }
 
 double fresnel_reflectance(double cosine, double index) {
-  if (index == 1.0) return 0.0;  // at grazing incidence too
+  if (index == 1.0) return 0.0;  // also at grazing incidence
   const double inside = refracted_cosine(cosine, index);
   const double across = (cosine - index * inside) / (cosine + index * inside);
   const double within = (index * cosine - inside) / (index * cosine + inside);
@@ -26,14 +26,14 @@ namespace {
 
 // The rough front of a clear dielectric: GGX microfacets that reflect by Fresnel's law.
 //
-// The lobe is what one reflection sends away, of power E(μ) = ∫ F(i·h) D G2/(4 μ) do. It is
-// reciprocal; whatever it does not send away counts as entering the glass, so nothing is lost.
+// The lobe is the light that leaves after one reflection, of power E(μ) = ∫ F(i·h) D G2/(4 μ) do.
+// It is reciprocal. The remaining light counts as entering the glass, so no power is lost.
 class RoughGlass final : public Lobe {
  public:
   // `alpha` ∈ [0.001, 1], `index` ∈ (1, 10].
   RoughGlass(double alpha, double index);
 
-  // E at `cosine`. To 1e-4, from a table.
+  // E at `cosine`, from a table with an error of 1e-4.
   double reflectance(double cosine) const { return once_(cosine)[0]; }
 
   Vec3 direction(const Arrival& light, const Draw& draw) const override;
@@ -56,8 +56,8 @@ Vec3 RoughGlass::direction(const Arrival& light, const Draw& draw) const {
   const double cosine = light.cosine;
   const Vec3 in = direction_at(cosine);
   Vec3 out = Vec3::UnitZ();
-  // Glass reflects one ray in some 25 at a steep angle: as many attempts are the rule, this many
-  // never happen.
+  // At a steep angle glass reflects about one ray in 25, so about 25 attempts are typical. The
+  // limit is never reached in practice.
   constexpr uint64_t most = 4096;
   for (uint64_t attempt = 0; attempt < most; ++attempt) {
     const Draw now = draw.attempt(attempt);
@@ -112,8 +112,8 @@ class OverCell final : public AlbedoLaw {
   PowerFractions fractions(double cosine, size_t band) const override {
     const double reflected = front_(cosine), enters = 1.0 - reflected;
     const double base = specular_[band];
-    // Light that meets the base, inner reflections included, as a fraction of the incident light;
-    // at grazing incidence none enters.
+    // Light that meets the base, including inner reflections, as a fraction of the incident light.
+    // None enters at grazing incidence.
     const double meets = enters > 0.0 ? enters / (1.0 - reflected * base) : 0.0;
     return {.absorbed = meets * (1.0 - base), .specular = 1.0 - meets * (1.0 - base)};
   }
@@ -217,7 +217,7 @@ OpticalSurface behind_glass(const OpticalSurface& base, double index, double alp
   for (size_t band = 0; band < max_bands; ++band) {
     const double sum =
         base.absorbed[band] + base.specular[band] + base.diffuse[band] + base.transmitted[band];
-    if (sum == 0.0) continue;  // beyond the bands in use
+    if (sum == 0.0) continue;  // band not in use
     const PowerFractions fractions = bsdf.law->fractions(1.0, band);
     surface.absorbed[band] = fractions.absorbed;
     surface.specular[band] = fractions.specular;

@@ -9,14 +9,14 @@
 namespace photorque {
 namespace {
 
-// Distance of an angle from the range of the nodes.
+// Distance [rad] of an angle from the range of the nodes; 0 inside and within 1e-9 rad of it.
 double beyond(const std::vector<double>& nodes, double angle) {
   constexpr double slack_rad = 1e-9;
   const double far = std::max(nodes.front() - angle, angle - nodes.back());
   return far > slack_rad ? far : 0.0;
 }
 
-// All angles of the lists and both ends, each once.
+// Sorted union of both lists, 0 and `last`, without duplicates.
 std::vector<double> joined(std::vector<double> angles, const std::vector<double>& more,
                            double last) {
   angles.insert(angles.end(), more.begin(), more.end());
@@ -68,7 +68,8 @@ double symmetrise(const BrdfTable& table, ReciprocalBrdf& brdf) {
   return mean2 > 0.0 ? std::sqrt(difference2 / mean2) : 0.0;
 }
 
-// Along the normal there is no azimuth.
+// Averages over the azimuth at normal incidence and at normal scattering, where the azimuth is
+// undefined.
 void average_along_normal(ReciprocalBrdf& brdf) {
   const std::vector<double>& azimuth = brdf.azimuth_rad;
   for (size_t o = 0; o < brdf.polar_rad.size(); ++o) {
@@ -103,7 +104,7 @@ ReciprocalBrdf reciprocal_brdf(const BrdfTable& table) {
 
 namespace {
 
-// ∫ (1 − s) w and ∫ s w over an interval, s from 0 to 1 along it.
+// ∫ (1 − s) w and ∫ s w over an interval; s runs from 0 to 1 along it.
 struct HatWeights {
   double low = 0.0, high = 0.0;
 };
@@ -134,7 +135,7 @@ class BrdfLobe final : public Lobe {
     return (1.0 - part) * reflectance_[i] + part * reflectance_[i + 1];
   }
   double asymmetry() const { return brdf_.asymmetry; }
-  // The reflectance is linear between nodes, so that its maximum is at one of them.
+  // Node with the largest reflectance: the reflectance is linear between nodes.
   size_t brightest_node() const {
     return static_cast<size_t>(std::max_element(reflectance_.begin(), reflectance_.end()) -
                                reflectance_.begin());
@@ -149,7 +150,7 @@ class BrdfLobe final : public Lobe {
     const size_t node = draw.extra(1) * (low + high) < high ? i + 1 : i;
     const Cell cell = choose_cell(node, draw.u);
     double along = cell.along, around = draw.v;
-    constexpr uint64_t most = 256;  // at worst one in four is kept
+    constexpr uint64_t most = 256;  // the acceptance is at least 1/4
     for (uint64_t attempt = 0; attempt < most; ++attempt) {
       if (attempt > 0) {
         along = draw.extra(3 * attempt);
@@ -203,7 +204,7 @@ class BrdfLobe final : public Lobe {
       Vec3 momentum = Vec3::Zero();
       for (size_t o = 0; o + 1 < polar().size(); ++o) {
         for (size_t a = 0; a + 1 < azimuth().size(); ++a) {
-          // Both sides of the plane of incidence.
+          // Factor 2: both sides of the plane of incidence.
           const auto sum = [&](const HatWeights& polar, const HatWeights& azimuth) {
             return 2.0 * (polar.low * (azimuth.low * brdf_.at(i, o, a) +
                                        azimuth.high * brdf_.at(i, o, a + 1)) +
@@ -221,10 +222,10 @@ class BrdfLobe final : public Lobe {
     }
   }
 
-  // A cell between nodes of scattering, drawn in proportion to its power.
+  // A cell between scattering nodes, drawn in proportion to its power.
   struct Cell {
-    size_t o, a;     // its lower nodes
-    double along;    // remainder of the random number, again uniform in (0, 1)
+    size_t o, a;     // lower nodes
+    double along;    // remainder of the random number, uniform in (0, 1)
     double largest;  // f at the brightest corner
   };
   Cell choose_cell(size_t node, double u) const {
@@ -241,10 +242,10 @@ class BrdfLobe final : public Lobe {
                       brdf_.at(node, o + 1, a + 1)})};
   }
 
-  // A direction within a cell or its mirror image, as Lambert's law has it.
+  // A direction within a cell or its mirror image, distributed by Lambert's law.
   struct CellPoint {
     Vec3 out;
-    double s, t;  // between the nodes of the polar angle and of the azimuth
+    double s, t;  // fractions between the nodes of the polar angle and of the azimuth
   };
   CellPoint point_in(const Cell& cell, double along, double around) const {
     const double low = std::sin(polar()[cell.o]), high = std::sin(polar()[cell.o + 1]);
@@ -268,7 +269,7 @@ class BrdfLobe final : public Lobe {
   }
 
   ReciprocalBrdf brdf_;
-  std::vector<double> cell_sums_;    // [in][cell]: power up to and with the cell
+  std::vector<double> cell_sums_;    // [in][cell]: cumulative power, including the cell
   std::vector<double> reflectance_;  // per node of incidence
   std::vector<Vec3> momentum_;       // ∫ f cos θ_o o do, per node of incidence
 };
@@ -278,7 +279,7 @@ class BrdfFractions final : public AlbedoLaw {
   BrdfFractions(std::shared_ptr<const BrdfLobe> lobe, const BandValues& scale)
       : lobe_(std::move(lobe)), scale_(scale) {}
   PowerFractions fractions(double cosine, size_t band) const override {
-    // Rounding must not make a perfect reflector emit.
+    // Rounding must not let a perfect reflector emit.
     const double reflected = std::min(1.0, scale_[band] * lobe_->reflectance(cosine));
     return {.absorbed = 1.0 - reflected, .diffuse = reflected};
   }
@@ -300,7 +301,7 @@ MeasuredSurface measured_surface(std::string name, const BrdfTable& table,
   MeasuredSurface measured;
   measured.surface.name = std::move(name);
   for (size_t band = 0; band < max_bands; ++band) {
-    if (!(scale[band] > 0.0)) continue;  // beyond the bands in use
+    if (!(scale[band] > 0.0)) continue;  // band not in use
     const PowerFractions fractions = bsdf.law->fractions(1.0, band);
     measured.surface.absorbed[band] = fractions.absorbed;
     measured.surface.diffuse[band] = fractions.diffuse;

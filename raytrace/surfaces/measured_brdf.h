@@ -1,10 +1,9 @@
-// A surface whose scattering was measured: a table of f(θ_i, θ_o, φ), isotropic.
+// A surface with measured scattering: a table of f(θ_i, θ_o, φ), isotropic.
 //
-// The table is made reciprocal (reciprocal_brdf()) and is linear in each of its angles between
-// nodes, which keeps f(i, o) = f(o, i). The reflectance ρ(θ_i) = ∫ f cos θ_o do, the momentum that
-// leaves and the distribution of directions are those of this interpolant, to rounding, so that
-// power and momentum balance. A peak narrower than the nodes are apart comes out as wide as they
-// are.
+// The table is symmetrised (reciprocal_brdf()) and linear in each angle between nodes, which
+// preserves f(i, o) = f(o, i). The reflectance ρ(θ_i) = ∫ f cos θ_o do, the leaving momentum and
+// the distribution of directions are those of this interpolant, to rounding. Hence power and
+// momentum balance. A peak narrower than the node spacing is broadened to the spacing.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +14,12 @@
 
 namespace photorque {
 
-// Angles rise; each list holds at least one.
+// Angles rise; each list contains at least one.
 struct BrdfTable {
   std::vector<double> incidence_rad;  // from the normal, in [0, π/2]
-  std::vector<double> scatter_rad;    // of the light that leaves, the same
-  // Between the planes of the two, in [0, π]: 0 is forward, where a mirror sends light, π is back
-  // towards where it came from. Scattering is the same on both sides of the plane of incidence.
+  std::vector<double> scatter_rad;    // of the leaving light, from the normal, in [0, π/2]
+  // Angle between the planes of incidence and scattering, in [0, π]: 0 is forward (mirror
+  // direction), π is backward. Scattering is equal on both sides of the plane of incidence.
   std::vector<double> azimuth_rad;
   std::vector<double> brdf_1_sr;  // ≥ 0; [incidence][scatter][azimuth], the last fastest
 
@@ -29,14 +28,14 @@ struct BrdfTable {
   }
 };
 
-// A table with f(i, o) = f(o, i): incidence and scattering share their nodes, from 0 to π/2, the
-// azimuth runs from 0 to π, and along the normal f does not depend on it. Linear in each of the
-// three angles between nodes.
+// A table with f(i, o) = f(o, i). Incidence and scattering have the same nodes, from 0 to π/2; the
+// azimuth runs from 0 to π; along the normal f does not depend on the azimuth. Linear in each of
+// the three angles between nodes.
 struct ReciprocalBrdf {
   std::vector<double> polar_rad, azimuth_rad;
   std::vector<double> brdf_1_sr;  // [incidence][scatter][azimuth]
-  // Root mean square of f(i, o) − f(o, i) over that of their mean, where the table had both; 0
-  // where it had none.
+  // Root mean square of f(i, o) − f(o, i), divided by the root mean square of their mean, over
+  // pairs that the table has in both directions; 0 if there are none.
   double asymmetry = 0.0;
 
   double at(size_t incidence, size_t scatter, size_t azimuth) const {
@@ -47,12 +46,13 @@ struct ReciprocalBrdf {
   }
 };
 
-// Both ways of a pair of directions get the mean of what was measured both ways, or the one that
-// was measured. Beyond its nodes the table stays as it is at the last; where both ways are beyond,
-// the one that is so by less counts.
+// Symmetrises a table. A pair of directions gets the mean of both measured values, or the only
+// measured one. Beyond its nodes the table is extended with its last values; if both directions are
+// beyond, the one that is less far beyond counts.
 ReciprocalBrdf reciprocal_brdf(const BrdfTable& table);
 
-// Where an angle lies between nodes that rise: between `below` and `below` + 1, at `part` ∈ [0, 1].
+// Position of an angle among rising nodes: between `below` and `below` + 1, at the fraction
+// `part` ∈ [0, 1].
 struct NodePlace {
   size_t below = 0;
   double part = 0.0;
@@ -61,13 +61,15 @@ NodePlace place_among(const std::vector<double>& nodes, double angle);
 
 struct MeasuredSurface {
   OpticalSurface surface;  // fractions at normal incidence
-  // The largest ρ, over the bands, and where. Above 1 the surface would shine: the caller refuses.
+  // Largest ρ over the bands, and its angle. The caller rejects a value above 1, which would
+  // violate conservation of energy.
   double largest_reflectance = 0.0;
   double at_incidence_rad = 0.0;
   double asymmetry = 0.0;  // of the table, see ReciprocalBrdf
 };
 
-// The table times `scale` (> 0) per band; the rest of the light is absorbed.
+// A surface with the BRDF of the table times `scale` (> 0) per band; the rest of the light is
+// absorbed.
 MeasuredSurface measured_surface(std::string name, const BrdfTable& table, const BandValues& scale);
 
 }  // namespace photorque

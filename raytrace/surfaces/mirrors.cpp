@@ -24,7 +24,7 @@ class RoughMirror final : public Lobe {
     const double cosine = light.cosine;
     if (draw.extra(0) >= once_(cosine)[0]) return rest_direction(draw);
     const Vec3 in = direction_at(cosine);
-    constexpr uint64_t most = 256;  // at worst one in three is kept
+    constexpr uint64_t most = 256;  // the acceptance is at least 1/3
     for (uint64_t attempt = 0; attempt < most; ++attempt) {
       const Draw now = draw.attempt(attempt);
       const Vec3 normal = facets_.visible_normal(in, now.u, now.v);
@@ -50,7 +50,7 @@ class RoughMirror final : public Lobe {
  private:
   double lost(double cosine) const { return std::max(0.0, 1.0 - once_(cosine)[0]); }
 
-  // The cumulated distribution of the cosine of light that needs several reflections.
+  // Cumulative distribution of the cosine of light that needs several reflections.
   void tabulate_rest() {
     constexpr size_t steps = 512;
     double sum = 0.0, along = 0.0, before = 0.0;
@@ -83,7 +83,7 @@ class RoughMirror final : public Lobe {
   CosineTable<3> once_;  // of light reflected once: power, sums of o_x over sin θ and of o_z
   std::vector<double> cumulated_;
   double rest_ = 0.0;    // 1 − Ē
-  double rest_z_ = 0.0;  // mean o_z of light reflected more often
+  double rest_z_ = 0.0;  // mean o_z of light reflected more than once
 };
 
 }  // namespace
@@ -115,12 +115,13 @@ class SlopeError final : public Lobe {
     const double second = second_rad_ * size * std::sin(2.0 * pi * draw.v);
     const Slope slope = slope_in(light, first, second);
     const Vec3 in = direction_at(light.cosine);
-    // The slope or its opposite, each as often as it shows.
+    // The slope or its opposite, each with the probability of its visible area.
     const double sign = draw.extra(0) * 2.0 < shows(in, slope.along) ? 1.0 : -1.0;
     return reflect(in, sign * slope.along, sign * slope.across);
   }
 
-  // Even in the turn of the axis but for y, which is odd, and the same after half a turn.
+  // z and x are even functions of the angle of the axis, y is an odd one; all have a period of half
+  // a turn.
   Vec3 mean_direction(const Arrival& light) const override {
     const double in_sine = direction_at(light.cosine).x();
     if (!turned_) {
@@ -163,22 +164,24 @@ class SlopeError final : public Lobe {
             first * light.axis_sine + second * light.axis_cosine};
   }
 
-  // The size of a slope, in parts of the axes, within which a fraction u lies.
+  // Slope magnitude, relative to the axes, within which a fraction u of the slopes lies.
   double size_within(double u) const {
     return shape_ == SlopeShape::gaussian ? std::sqrt(-2.0 * std::log(u)) : std::sqrt(u);
   }
-  // Density per area of slopes, in parts of the axes.
+  // Density of slopes per area, relative to the axes.
   double spread(double size) const {
     if (shape_ == SlopeShape::gaussian) return std::exp(-0.5 * size * size) / (2.0 * pi);
     return size <= 1.0 ? 1.0 / pi : 0.0;
   }
 
-  // The part of the surface that leans by `along` towards the light, as it shows.
+  // Visible area, relative to a flat surface, of the part of the surface tilted by `along` towards
+  // the light; clamped to [0, 2].
   static double shows(const Vec3& in, double along) {
     return std::clamp(1.0 + along * in.x() / in.z(), 0.0, 2.0);
   }
 
-  // Light that would go below the surface meets it again.
+  // Reflects at the facet. A direction below the surface is mirrored to above it, as after a second
+  // reflection.
   static Vec3 reflect(const Vec3& in, double along, double across) {
     const Vec3 normal = Vec3(along, across, 1.0).normalized();
     Vec3 out = 2.0 * in.dot(normal) * normal - in;
@@ -186,7 +189,7 @@ class SlopeError final : public Lobe {
     return out;
   }
 
-  // The expectation of direction(), over slopes up to 7 σ.
+  // Expectation of direction(), over slopes up to 7 σ.
   Vec3 mean_of(const Arrival& light) const {
     const double reach = shape_ == SlopeShape::gaussian ? 7.0 : 1.0;
     constexpr size_t sizes = 40, angles = 48;
@@ -208,9 +211,9 @@ class SlopeError final : public Lobe {
     return mean / sum;
   }
 
-  // Coefficients of cos 2kφ (x over sin θ, z) and sin 2kφ (y over sin θ) in the turn φ of the axis,
-  // by the trapezoidal rule over half a turn. The k-th is of the order of the slopes to the power
-  // 2k.
+  // Coefficients of cos 2kφ (x over sin θ, z) and sin 2kφ (y over sin θ) in the angle φ of the
+  // axis, by the trapezoidal rule over half a turn. The k-th coefficient is of the order of the
+  // slopes to the power 2k.
   static constexpr size_t harmonic_count = 4;
   using Harmonics = std::array<double, 3 * harmonic_count>;
   Harmonics harmonics(double cosine) const {
@@ -234,7 +237,7 @@ class SlopeError final : public Lobe {
 
   double first_rad_, second_rad_;
   SlopeShape shape_;
-  CosineTable<2> even_;  // with equal axes
+  CosineTable<2> even_;  // for equal axes
   std::optional<CosineTable<3 * harmonic_count>> turned_;
 };
 

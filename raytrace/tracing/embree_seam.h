@@ -1,5 +1,5 @@
-// The only source that depends on the installed major version of Embree: 3 (contexts) or 4
-// (arguments). PHOTORQUE_EMBREE_MAJOR comes from CMake.
+// The only source file that depends on the installed major version of Embree: 3 (contexts) or 4
+// (arguments). CMake defines PHOTORQUE_EMBREE_MAJOR.
 #pragma once
 
 #if PHOTORQUE_EMBREE_MAJOR == 4
@@ -29,7 +29,7 @@ class Query {
   void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
     rtcIntersect16(valid, scene, &rays, &arguments_);
   }
-  // Sets tfar to −∞ where something is hit.
+  // Sets tfar of every occluded ray to −∞.
   static void occluded(RTCScene scene, const int* valid, RTCRay8& rays) {
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
@@ -58,7 +58,7 @@ class Query {
   void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
     rtcIntersect16(valid, scene, &context_, &rays);
   }
-  // Sets tfar to −∞ where something is hit.
+  // Sets tfar of every occluded ray to −∞.
   static void occluded(RTCScene scene, const int* valid, RTCRay8& rays) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);

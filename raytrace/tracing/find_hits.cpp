@@ -25,7 +25,7 @@ void intersect_packets(const TraceableScene::Data& scene, size_t rays, Coherence
   const std::array<float*, 6> rows = {packet.ray.org_x, packet.ray.org_y, packet.ray.org_z,
                                       packet.ray.dir_x, packet.ray.dir_y, packet.ray.dir_z};
   for (size_t begin = 0; begin < rays; begin += Width) {
-    if (rays - begin < Width) {  // the last packet: lanes beyond the end are not traced
+    if (rays - begin < Width) {  // last packet: disable the lanes beyond the end
       std::fill(valid.begin() + static_cast<ptrdiff_t>(rays - begin), valid.end(), 0);
     }
     for (size_t k = 0; k < 6; ++k) std::copy_n(&buffer.ray[k][begin], Width, rows[k]);
@@ -39,9 +39,11 @@ void intersect_packets(const TraceableScene::Data& scene, size_t rays, Coherence
   }
 }
 
-// Records → columns; the columns are padded to a whole packet with copies of the last ray.
+// Converts records to columns; the columns are padded to a whole packet with copies of the last
+// ray.
 void load_rays(const RayList& rays, HitBuffer& buffer) {
-  constexpr size_t ahead = 32;  // rays in another order come from anywhere in the batch
+  // Prefetch distance; reordered rays are read from anywhere in the batch.
+  constexpr size_t ahead = 32;
   size_t i = 0;
   std::array<const float*, 8> rows;
   for (; i + 8 <= rays.size(); i += 8) {
@@ -62,7 +64,7 @@ void load_rays(const RayList& rays, HitBuffer& buffer) {
   }
 }
 
-// The planes of the triangles that were hit.
+// Loads the planes of the hit triangles.
 void load_planes(const TraceableScene::Data& scene, HitBuffer& buffer) {
   const Hits& hits = buffer.hits;
   for (int i = 0; i < hits.count; i += 4) {
@@ -75,7 +77,7 @@ void load_planes(const TraceableScene::Data& scene, HitBuffer& buffer) {
   }
 }
 
-// Whether all hits are on the same instance, as most neighbours are.
+// Whether all hits are on the same instance, which is common for neighbouring rays.
 bool on_one_instance(const Hits& hits) {
   uint32_t differences = 0;
   for (int i = 0; i < hits.count; ++i) differences |= hits.instance[i] ^ hits.instance[0];
@@ -90,9 +92,9 @@ bool on_one_side(const Hits& hits) {
   return differences == 0;
 }
 
-// Where the rays meet the planes of their triangles, in double precision: Embree's own distance is
-// off by up to 5e-7 of the scene's size. `plane(k, i)` gives component k of the normal of hit i,
-// then the offset.
+// Intersects the rays with the planes of their triangles in double precision: Embree's own distance
+// has an error of up to 5e-7 of the scene's size. `plane(k, i)` gives component k of the normal of
+// hit i for k < 3, and the offset for k = 3.
 template <typename Plane>
 void meet_planes(const Vec3& centre_m, const Plane& plane, HitBuffer& buffer) {
   Hits& hits = buffer.hits;
@@ -137,7 +139,7 @@ int compact(HitBuffer& buffer, Hits::Column<int>& kept) {
     count += hits.instance[i] != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
   }
   hits.count = count;
-  // In place: kept[j] ≥ j.
+  // Works in place because kept[j] ≥ j.
   const auto close = [&](auto& column) {
     for (int j = 0; j < count; ++j) column[j] = column[kept[j]];
   };

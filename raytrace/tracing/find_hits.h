@@ -1,4 +1,4 @@
-// Rays → hits: through Embree in packets, then in double precision.
+// Finds the hits of rays: with Embree in packets, then in double precision.
 #pragma once
 
 #include <algorithm>
@@ -10,24 +10,24 @@
 
 namespace photorque {
 
-// Hits on their way to the receivers, with data that the receivers do not need.
+// Hits before they reach the receivers, with data that only the tracer needs.
 struct HitBuffer {
   Hits hits;
   Hits::Column<uint32_t> sample;
-  // The rays in single precision: ox oy oz dx dy dz, then the bits of `sample`, and padding.
+  // Rays in single precision: ox oy oz dx dy dz, then the bits of `sample`, then padding.
   std::array<Hits::Column<float>, 8> ray;
   std::array<Hits::Column<double>, 4> plane;  // of the triangle: normal and offset
   Hits::Column<float> facing;                 // normal · direction: negative on the front
   bool one_side = false;                      // all hits are on the same side of one instance
-  Hits::Column<double> left_W;                // power that goes on, all bands
+  Hits::Column<double> left_W;                // power that continues, all bands
 
   Vec3 direction(int i) const { return {ray[3][i], ray[4][i], ray[5][i]}; }
 };
 
-// Rays in their own order.
+// Rays in a given order.
 struct RayList {
   std::span<const Ray> rays;
-  std::span<const uint16_t> order;  // indices into `rays`; empty: as they lie
+  std::span<const uint16_t> order;  // indices into `rays`; empty: order of `rays`
 
   size_t size() const { return order.empty() ? rays.size() : order.size(); }
   const Ray& operator[](size_t i) const { return rays[order.empty() ? i : order[i]]; }
@@ -43,11 +43,11 @@ struct RayList {
 void find_hits(const TraceableScene::Data& scene, const RayList& rays, Coherence coherence,
                HitBuffer& buffer);
 
-// Closes the gaps of the rows without a hit; hits.count becomes the number of hits and kept[j] the
-// row that hit j had. Returns the number of hits; where that is all, `kept` stays as it is.
+// Removes the rows without a hit. hits.count becomes the number of hits; kept[j] becomes the former
+// row of hit j, or is unchanged if all rows are hits. Returns the number of hits.
 int compact(HitBuffer& buffer, Hits::Column<int>& kept);
 
-// Fills position, cosine, front, sample and depth of every hit, and whether all are on one side.
+// Fills position, cosine, front, sample and depth of every hit, and one_side.
 void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer);
 
 }  // namespace photorque

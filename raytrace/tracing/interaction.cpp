@@ -15,8 +15,8 @@ namespace {
 
 using ComponentPowers = std::array<double, components.size()>;
 
-// The fractions of one hit: the surface's own where they are the same at every angle, which costs
-// no copy, else the result of its law.
+// The fractions at one hit: a reference to the surface's constant fractions, which needs no copy,
+// or the result of its law.
 class HitAlbedo {
  public:
   HitAlbedo(const OpticalSurface& surface, double cosine, int bands) {
@@ -38,7 +38,7 @@ class HitAlbedo {
   HitAlbedo(const HitAlbedo&) = delete;
   HitAlbedo& operator=(const HitAlbedo&) = delete;
 
-  // Per band.
+  // Fractions per band.
   const BandValues& operator[](Component c) const { return *of_[static_cast<size_t>(c)]; }
 
  private:
@@ -57,7 +57,7 @@ ComponentPowers carried_W(const Hits& hits, int i, const HitAlbedo& albedo) {
   return carried;
 }
 
-// Draws a component in proportion to the power that it carries; at least one carries some.
+// Draws a component in proportion to its power; the powers must not all be zero.
 Component choose_component(const ComponentPowers& carried, double total_W, double u) {
   Component chosen = components.front();
   double at_W = u * total_W;
@@ -71,8 +71,8 @@ Component choose_component(const ComponentPowers& carried, double total_W, doubl
   return chosen;
 }
 
-// The momentum flow [N] that leaves along all components: the expectation over what is drawn, so
-// that forces carry no noise of the draw.
+// Momentum flow [N] that leaves along all components. It is the expectation over the drawn
+// component and direction, so that forces carry no noise of the draw.
 Vec3 leaving_momentum_N(const OpticalSurface& surface, const Incidence& incidence,
                         const ComponentPowers& carried) {
   Vec3 flow_W = Vec3::Zero();
@@ -83,7 +83,7 @@ Vec3 leaving_momentum_N(const OpticalSurface& surface, const Incidence& incidenc
   return flow_W / speed_of_light_m_s;
 }
 
-// Momentum flow [N] of the heat that leaves both sides of the sheet, by Lambert's law on each.
+// Momentum flow [N] of the heat radiation from both sides of the sheet, by Lambert's law on each.
 Vec3 heat_momentum_N(const Bsdf& bsdf, bool front, const Vec3& lit_normal, double absorbed_W) {
   const double lit = front ? bsdf.front_emission : 1.0 - bsdf.front_emission;
   return bsdf.reemitted * absorbed_W * (2.0 * lit - 1.0) * lambertian_mean / speed_of_light_m_s *
@@ -107,10 +107,10 @@ Incidence incidence_at(const TraceableScene::Data& scene, const HitBuffer& buffe
   return {buffer.direction(i), buffer.hits.front[i] != 0 ? outward : Vec3(-outward)};
 }
 
-// Settles hit i of the buffer, whose absorbed_W is known: takes the momentum of what leaves, heat
-// radiation included, from force_N, and appends the ray that goes on to `next`, or ends it if it
+// Processes hit i of the buffer, whose absorbed_W is known. Subtracts the leaving momentum,
+// including heat radiation, from force_N. Appends the continuing ray to `next`, or ends it if it
 // carries less than the cutoff. The component and direction of the ray come from its own point of
-// `sequence`. All surfaces, plain or with a BSDF, take this way.
+// `sequence`. Used for all surfaces, plain or with a BSDF.
 void scatter(const InteractionContext& context, const SobolSequence& sequence, HitBuffer& buffer,
              int i, PowerBalanceSums& power_balance, Continuation& next) {
   Hits& hits = buffer.hits;
@@ -136,7 +136,8 @@ void scatter(const InteractionContext& context, const SobolSequence& sequence, H
   if (!(total_W > 0.0)) return;
   const auto point = sequence.point(buffer.sample[i]);
   const Component chosen = choose_component(carried, total_W, point[0]);
-  // The ray takes all that was not absorbed: its power per band is that of the component, scaled.
+  // The ray takes all power that was not absorbed. Its power per band is that of the component,
+  // scaled.
   const double scale = total_W / carried[static_cast<size_t>(chosen)];
   BandValues power_W;
   double ray_W = 0.0;
@@ -158,13 +159,13 @@ void scatter(const InteractionContext& context, const SobolSequence& sequence, H
   next.power_W.insert(next.power_W.end(), power_W.begin(), power_W.begin() + hits.bands);
 }
 
-// Four neighbours of a column.
+// Four neighbouring entries of a column.
 using Quad = Eigen::Array4d;
 Eigen::Map<const Quad> quad(const Hits::Column<double>& column, int first) {
   return Eigen::Map<const Quad>(column.data() + first);
 }
 
-// Makes the rows after the last hit, up to a whole quad, carry no momentum.
+// Clears the rows after the last hit up to a multiple of four, so that they carry no momentum.
 void pad_quad(Hits& hits) {
   for (size_t k = 0; k < 3; ++k) {
     std::fill_n(hits.position_m[k].begin() + hits.count, 3, 0.0);
@@ -172,7 +173,7 @@ void pad_quad(Hits& hits) {
   }
 }
 
-// Whether everything stays where it hits.
+// Whether all hits are on a side that absorbs all light.
 bool all_black(const TraceableScene::Data& scene, const HitBuffer& buffer) {
   const Hits& hits = buffer.hits;
   return buffer.one_side && scene.black[scene.side(hits.instance[0], hits.front[0])] != 0;
@@ -184,7 +185,7 @@ void absorb_all(Hits& hits) {
   }
 }
 
-// absorbed_W and left_W of every hit, by the fractions that hold at every angle.
+// Fills absorbed_W and left_W of every hit from fractions that do not depend on the angle.
 void absorb(const TraceableScene::Data& scene, HitBuffer& buffer) {
   Hits& hits = buffer.hits;
   std::fill_n(buffer.left_W.begin(), hits.count, 0.0);
@@ -204,7 +205,7 @@ void absorb(const TraceableScene::Data& scene, HitBuffer& buffer) {
   }
 }
 
-// Absorbs again where the fractions depend on the angle of incidence.
+// Recomputes absorbed_W and left_W where the fractions depend on the angle of incidence.
 void absorb_by_angle(const TraceableScene::Data& scene, HitBuffer& buffer) {
   Hits& hits = buffer.hits;
   for (int i = 0; i < hits.count; ++i) {
@@ -220,7 +221,7 @@ void absorb_by_angle(const TraceableScene::Data& scene, HitBuffer& buffer) {
   }
 }
 
-// Whether any hit has power that goes on. By the bits, which are found several at a time.
+// Whether any hit has power that continues. Compares bits, because this loop is vectorised.
 bool any_left(const HitBuffer& buffer) {
   uint64_t bits = 0;
   for (int i = 0; i < buffer.hits.count; ++i) bits |= std::bit_cast<uint64_t>(buffer.left_W[i]);
@@ -247,7 +248,7 @@ void book_absorbed(const HitBuffer& buffer, PowerBalanceSums& power_balance) {
   }
 }
 
-// The momentum that arrives at every hit.
+// Sets force_N of every hit to the arriving momentum flow.
 void take_momentum(HitBuffer& buffer) {
   Hits& hits = buffer.hits;
   const auto& direction = buffer.ray;  // columns 3 to 5
@@ -268,7 +269,8 @@ void take_momentum(HitBuffer& buffer) {
   }
 }
 
-// The momentum of first hits, in four lanes, the same on every machine.
+// Adds the momentum of first hits to the balance, in four lanes, so that the bits are the same on
+// every machine.
 void book_momentum(Hits& hits, PowerBalanceSums& power_balance) {
   pad_quad(hits);
   std::array<Quad, 6> intake;

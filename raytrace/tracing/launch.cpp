@@ -46,7 +46,7 @@ void RayPlacement::place(const RayBlock& __restrict rays, RayColumns& __restrict
     const float gap_m = late * (start_m > ez ? start_m - ez : 0.0f);
     const float step = gap_m * per_z;
     const float sx = ex + step * fx, sy = ey + step * fy;
-    // Rays that get there are on the plane without rounding.
+    // For rays that reach the plane, set z exactly, without rounding.
     const float on_plane = (fz > min_z ? 1.0f : 0.0f) * (gap_m > 0.0f ? 1.0f : 0.0f);
     const float sz = (1.0f - on_plane) * (step * fz + (ez - start_m));
     for (size_t k = 0; k < 3; ++k) {
@@ -61,11 +61,13 @@ void RayPlacement::place(const RayBlock& __restrict rays, RayColumns& __restrict
 
 namespace {
 
-// Rays of a batch: many enough that sorting brings packets of close neighbours together, few enough
-// that they stay in the cache and 16 bits number them.
+// Binary logarithm of the number of rays per batch. A batch is large enough that sorting brings
+// packets of close neighbours together. It is small enough to stay in the cache and to be numbered
+// with 16 bits.
 constexpr int log2_batch = 13;
 
-// Bits of a landing cell per side: some eight rays of a batch in each cell, a packet.
+// Bits of a landing cell per side, such that a cell contains about eight rays of a batch: one
+// packet.
 uint32_t cell_bits(uint32_t batch) {
   return (static_cast<uint32_t>(std::bit_width(batch)) - 3u) / 2u;
 }
@@ -77,12 +79,12 @@ constexpr uint32_t spread_bits(uint32_t x) {
   return (x | (x << 1)) & 0x5555u;
 }
 
-// Cells of the part of the plane on which a batch lands.
+// Grid of cells on the part of the plane where a batch lands.
 struct LandingGrid {
   uint32_t bits;  // per side
   float x_low, y_low, x_scale, y_scale;
 
-  // Makes the grid from some rays of the batch.
+  // Derives the grid from some rays of the batch.
   LandingGrid(const LaunchPlan& plan, uint32_t batch, const Landing& some)
       : bits(cell_bits(batch)) {
     const auto [x_least, x_most] = std::minmax_element(some.x.begin(), some.x.end());
@@ -111,7 +113,7 @@ void make_keys(const LaunchPlan& plan, const LandingGrid& grid, const Landing& a
   }
 }
 
-// Columns → records.
+// Converts columns to records.
 void store(const RayColumns& placed, Ray* out) {
   for (int begin = 0; begin < ray_block; begin += 8) {
     std::array<const float*, 8> rows;
@@ -180,9 +182,9 @@ BeamSample sample_beam(const Emitter& emitter, const std::optional<Targets>& tar
   return sample;
 }
 
-// Number of leading bits, in each dimension, that the rays of a batch have in common, so that they
-// land close together. Aperture and directions are halved in turn, whichever spreads the landing
-// points more; in each, the azimuth first.
+// Number of leading bits that the rays of a batch have in common, per dimension, so that they land
+// close together. The aperture or the directions are halved in each step, whichever spreads the
+// landing points more; in each the azimuth is halved first.
 std::array<int, sobol_dimensions> shared_bits(int bits, double aperture_m, double spread_m) {
   int of_aperture = 0, of_direction = 0;
   while (of_aperture + of_direction < bits) {

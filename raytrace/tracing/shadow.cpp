@@ -10,13 +10,13 @@
 namespace photorque {
 namespace {
 
-// A convex polygon that a triangle cut by two planes can be.
+// A convex polygon, large enough for a triangle clipped by two planes.
 struct Polygon {
   std::array<Vec3, 5> corner;
   size_t count = 0;
 };
 
-// The part of a polygon with sign · z ≥ sign · at.
+// Part of a polygon with sign · z ≥ sign · at.
 Polygon cut(const Polygon& polygon, double at, double sign) {
   Polygon kept;
   for (size_t i = 0; i < polygon.count; ++i) {
@@ -31,7 +31,7 @@ Polygon cut(const Polygon& polygon, double at, double sign) {
   return kept;
 }
 
-// Distance of the origin from a convex polygon in the xy plane, either orientation; 0 inside.
+// Distance of the origin from a convex polygon in the xy plane, in either orientation; 0 inside.
 double distance_from_origin(const Polygon& polygon) {
   bool left = false, right = false;
   double nearest2 = INFINITY;
@@ -62,12 +62,12 @@ Ball ball_about(std::span<const TriangleCorners> triangles) {
   return ball;
 }
 
-// Every edge is of two triangles that run along it in opposite ways. Corners at the same place are
-// one.
+// Whether every edge belongs to two triangles that traverse it in opposite directions. Corners at
+// the same position count as one.
 bool is_closed(std::span<const TriangleCorners> triangles) {
   using Place = std::array<double, 3>;
   const auto place = [](const Vec3& p) { return Place{p.x(), p.y(), p.z()}; };
-  std::map<std::pair<Place, Place>, int> edges;  // how often they are run along
+  std::map<std::pair<Place, Place>, int> edges;  // number of traversals
   for (const TriangleCorners& corners : triangles) {
     for (size_t k = 0; k < 3; ++k) ++edges[{place(corners[k]), place(corners[(k + 1) % 3])}];
   }
@@ -77,8 +77,8 @@ bool is_closed(std::span<const TriangleCorners> triangles) {
   });
 }
 
-// The half-spaces whose common part is the body with this surface, a little smaller than it; empty
-// if it is not closed and convex, or has many triangles.
+// Half-spaces whose intersection is the body with this surface, shrunk slightly against rounding.
+// Empty if the surface is not closed and convex, or has more than 256 triangles.
 std::vector<Occluder::Face> faces_of_convex(std::span<const TriangleCorners> triangles) {
   constexpr size_t most = 256;
   if (triangles.size() > most || !is_closed(triangles)) return {};
@@ -138,8 +138,8 @@ void find_in_packets(const TraceableScene::Data& scene, std::span<const ShadowRa
 
 std::vector<Occluder> occluders_above(const Scene& scene, const Vec3& plane_point_m,
                                       const Vec3& plane_normal) {
-  constexpr size_t together = 16;  // triangles of parts that are not convex
-  // A triangle below this height is in the plane, to single precision.
+  constexpr size_t together = 16;  // triangles per occluder for parts that are not convex
+  // Triangles below this height count as in the plane (single precision).
   const Eigen::AlignedBox3d box = scene.box();
   const double min_m = box.isEmpty() ? 0.0 : 1e-6 * 0.5 * box.diagonal().norm();
   std::vector<Occluder> occluders;
@@ -176,7 +176,7 @@ Shaft::Shaft(const Ball& from, const Ball& to) : start_m_(from.centre_m), end_(t
   high_m_ = length + to.radius_m;
   first_m_ = from.radius_m;
   last_m_ = length - to.radius_m;
-  // The cone about both balls; where one holds the other, the larger ball's cylinder.
+  // Cone around both balls. If one ball contains the other, a cylinder with the larger radius.
   const double slope = length > 0.0 ? (to.radius_m - from.radius_m) / length : 1.0;
   if (std::abs(slope) < 0.7) {
     const double slant = 1.0 / std::sqrt(1.0 - slope * slope);
@@ -225,7 +225,7 @@ bool Shaft::may_meet(const Occluder& occluder) const {
                      [&](const TriangleCorners& triangle) { return may_meet(triangle); });
 }
 
-// A disc at a place along the axis is inside a half-space if a linear inequality of the place
+// A disc at a position along the axis is inside a half-space if a linear inequality of the position
 // holds.
 bool Shaft::is_blocked_by(const Occluder& occluder) const {
   if (occluder.faces.empty()) return false;

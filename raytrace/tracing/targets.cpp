@@ -11,10 +11,11 @@
 namespace photorque {
 namespace {
 
-// A vertex as the light sees it, and how far directions move it.
+// A vertex in the emitter's frame, with the distances that determine its shift with the light's
+// direction.
 struct Seen {
   double x_m, y_m;
-  double height_m, across_m;  // |z| and ρ
+  double height_m, across_m;  // |z| over the disc's middle; ρ from the axis
 };
 struct SeenTriangle {
   std::array<Seen, 3> corner;
@@ -29,7 +30,8 @@ struct SeenTriangle {
   }
 };
 
-// The triangles of all parts; of many, the boxes about the parts' meshes.
+// Triangles of all parts; for scenes of more than `most` triangles, those of the boxes around the
+// parts' meshes.
 std::vector<SeenTriangle> triangles_of(const Scene& scene, const RigidTransform& emitter_from_body,
                                        double disc_height_m, uint64_t most) {
   const auto seen_at = [&](const Vec3& body_m) {
@@ -57,7 +59,7 @@ std::vector<SeenTriangle> triangles_of(const Scene& scene, const RigidTransform&
       const auto corner = static_cast<Eigen::AlignedBox3d::CornerType>(i);
       corners.push_back(seen_at(part.body_from_mesh * box.corner(corner)));
     }
-    // Two for each face: corners that differ in two of the three axes.
+    // Two triangles per face of the box. The corners of a face differ in two of the three axes.
     for (const auto& [a, b, c, d] : {std::array{0, 1, 3, 2},
                                      {4, 5, 7, 6},
                                      {0, 1, 5, 4},
@@ -72,10 +74,10 @@ std::vector<SeenTriangle> triangles_of(const Scene& scene, const RigidTransform&
   return triangles;
 }
 
-// Bits on a square grid.
+// A bitmap of square cells.
 class BitGrid {
  public:
-  // Holds [low, high], `side` (a power of two ≥ 64) cells along the longer edge.
+  // Covers [low, high] with `side` cells (a power of two ≥ 64) along the longer edge.
   BitGrid(const Vec2& low_m, const Vec2& high_m, size_t side)
       : low_m_(low_m),
         size_m_((high_m - low_m).maxCoeff() * (1.0 + 1e-9) / static_cast<double>(side)),
@@ -84,7 +86,7 @@ class BitGrid {
 
   void mark(const SeenTriangle& triangle, double margin_m);
   size_t count() const;
-  // Joins 2 × 2 cells.
+  // Merges 2 × 2 cells.
   void halve();
   Targets::Cells cells() const;
 
@@ -124,7 +126,7 @@ void BitGrid::mark(const SeenTriangle& triangle, double margin_m) {
     return;
   }
   for (size_t row = first; row <= last; ++row) {
-    // The range of the triangle within the row, which is extended by the margin on both sides.
+    // Range of the triangle within the row, extended by the margin on both sides.
     const double bottom_m = low_m_.y() + static_cast<double>(row) * size_m_ - margin_m;
     const double top_m = bottom_m + size_m_ + 2.0 * margin_m;
     double from_m = std::numeric_limits<double>::max(), to_m = -from_m;
@@ -153,7 +155,7 @@ size_t BitGrid::count() const {
   return sum;
 }
 
-// Every second bit of a word, together in its lower half.
+// Packs every second bit of a word into its lower half.
 uint64_t even_bits(uint64_t x) {
   x &= 0x5555555555555555u;
   x = (x | (x >> 1)) & 0x3333333333333333u;
@@ -178,7 +180,7 @@ void BitGrid::halve() {
   *this = std::move(half);
 }
 
-// Interleaves the bits of a 16-bit number with zeros, and takes them out again.
+// Morton code: interleaves the bits of a 16-bit number with zeros, and the inverse.
 uint32_t with_gaps(uint32_t x) {
   x = (x | (x << 8)) & 0x00ff00ffu;
   x = (x | (x << 4)) & 0x0f0f0f0fu;
@@ -208,7 +210,7 @@ Targets::Cells BitGrid::cells() const {
   return cells;
 }
 
-// The cells for all directions up to a sine of the angle from the axis.
+// Cells for all directions with a sine of the angle from the axis up to `sine`.
 Targets::Cells cells_within(const std::vector<SeenTriangle>& triangles, double sine,
                             double rounding_m, uint64_t rays) {
   Vec2 low_m = Vec2::Constant(std::numeric_limits<double>::max()), high_m = -low_m;
@@ -231,7 +233,7 @@ Targets::Cells cells_within(const std::vector<SeenTriangle>& triangles, double s
   return grid.cells();
 }
 
-// The sine of the angle within which a fraction of the light lies.
+// Sine of the angle that contains a fraction of the light.
 double sine_within(const ParallelLight& light, double fraction) {
   SampleBlock samples{};
   RayBlock rays;
@@ -251,7 +253,7 @@ std::optional<Targets> Targets::of(const Emitter& emitter, const RigidTransform&
   if (triangles.empty()) return std::nullopt;
   // Rounding error of a few operations on coordinates in single precision.
   const double rounding_m = 1e-6 * light->radius_m();
-  // A range ends where the angle has grown by this factor, from the outside inwards.
+  // Adjacent ranges, from the outside inwards, differ in their angle by at least this factor.
   constexpr double worth = 1.5, rounding_of_sine = 1.0 + 1e-6;
   std::vector<AngleRange> ranges = {{0.0, 1.0, 0.0, 0.0, {}}};
   std::vector<double> sines = {sine_within(*light, 1.0) * rounding_of_sine};
@@ -303,7 +305,7 @@ void Targets::emit(SampleBlock& samples, RayBlock& rays) const {
   light_->fill_directions(samples, rays);
   for (int i = 0; i < ray_block; ++i) {
     const Cells& all = range[i]->cells;
-    // The cell, and in the lower half of the word the place along it.
+    // Index of the cell; the lower half of the word is the position within it.
     const uint64_t count = all.cells.size();
     const uint64_t place = samples.bits[0][i] * count + count / 2;
     const Cell cell = all.cells[place >> 32];

@@ -1,4 +1,4 @@
-// Where parallel light has to be sent so that it meets a scene.
+// Selects the part of parallel light that can meet a scene.
 #pragma once
 
 #include <cstdint>
@@ -10,32 +10,32 @@
 
 namespace photorque {
 
-// The cells of a ParallelLight's disc from which rays can meet a triangle.
+// Cells of a ParallelLight's disc from which rays can meet a triangle.
 //
-// Seen along a direction at the angle θ from the axis a point at height z over the disc's middle
-// lies within |z| sin θ + ρ (1 − cos θ) of its place (ρ from the axis) along the axis. Triangles
-// with this margin are drawn onto a grid of bits, which is halved in both directions until few
-// cells are left. Light far from the axis has wide margins and little power, so directions are cut
-// into a few ranges of angles, each with separate cells. Points and directions are drawn in
-// proportion to the cells' area times the range's power: every ray carries the same power, and the
-// light left out meets nothing. Exact: no result is biased.
+// Seen along a direction at the angle θ from the axis, a point moves by at most
+// |z| sin θ + ρ (1 − cos θ) from its position along the axis (z: height over the disc's middle, ρ:
+// distance from the axis). Triangles with this margin are drawn on a bitmap. The bitmap is halved
+// in both directions until few cells are left. Light far from the axis has wide margins and little
+// power. Therefore directions are divided into a few ranges of angles, each with separate cells.
+// Points and directions are drawn in proportion to the cells' area times the range's power, so that
+// every ray carries the same power. The omitted light meets nothing: the results are unbiased.
 class Targets {
  public:
-  // Nothing if the light is not parallel, or if nearly all of the disc is needed. `rays` of the
-  // emitter bound the work.
+  // Empty if the light is not parallel, or if nearly all of the disc is needed. The number of
+  // `rays` of the emitter limits the number of cells.
   static std::optional<Targets> of(const Emitter& emitter, const RigidTransform& body_from_emitter,
                                    const TraceableScene::Data& scene, uint64_t rays);
 
-  // Fraction of the emitter's power that is sent; the rest would meet nothing. In (0, 1).
+  // Fraction of the emitter's power that is sent, in (0, 1); the rest would meet nothing.
   double fraction() const { return fraction_; }
 
-  // As Emitter::emit(), onto the cells alone. Changes dimension 2 of the samples.
+  // See Emitter::emit(); the points lie in the cells only. Changes dimension 2 of the samples.
   void emit(SampleBlock& samples, RayBlock& rays) const;
 
   struct Cell {
     uint16_t x, y;
   };
-  // Square cells from a corner on, along a Morton curve.
+  // Square cells in the order of a Morton curve, from a corner.
   struct Cells {
     double x_m = 0.0, y_m = 0.0, size_m = 0.0;
     std::vector<Cell> cells;
@@ -44,7 +44,7 @@ class Targets {
   };
 
  private:
-  // Directions between two fractions of the light, counted from the axis.
+  // Directions between two fractions of the light, measured from the axis outwards.
   struct AngleRange {
     double from, to;      // fractions of the light
     double begin, scale;  // fraction = from + (draw − begin) · scale

@@ -46,7 +46,8 @@ bool is_black(const OpticalSurface& surface, int bands) {
                      [](double fraction) { return fraction == 1.0; });
 }
 
-// Gives all triangles of a flat part the plane of the largest. Returns whether the part is flat.
+// If the part is flat, gives all its triangles the plane of the largest one. Returns whether it is
+// flat.
 bool flatten(std::span<const Vec3> vertices_m, const Mesh& mesh, double scene_radius_m,
              std::span<TrianglePlane> planes) {
   const double rounding_m = 1e-12 * scene_radius_m;
@@ -100,8 +101,8 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
   data.first_triangle.push_back(static_cast<uint32_t>(data.planes.size()));
   for (size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto& [a, b, c] = mesh.triangles[i];
-    // Barycentric weights refer to vertices 1 and 2 as the mesh has them, so the order stays and a
-    // mirrored instance only turns its normal.
+    // Barycentric weights refer to vertices 1 and 2 of the mesh, so their order must not change: a
+    // mirrored instance has its normal reversed instead.
     indices[3 * i] = a;
     indices[3 * i + 1] = b;
     indices[3 * i + 2] = c;
@@ -114,7 +115,8 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
                             std::span(data.planes).subspan(data.first_triangle.back()));
   data.flat.push_back(flat ? 1 : 0);
   rtcCommitGeometry(geometry);
-  rtcAttachGeometry(data.embree, geometry);  // its id is the instance's index: both count from 0
+  // Its id equals the instance's index: both count from 0.
+  rtcAttachGeometry(data.embree, geometry);
   rtcReleaseGeometry(geometry);
   const int bands = data.scene.bands.count();
   data.black.push_back(is_black(data.scene.surfaces[instance.back_surface], bands) ? 1 : 0);
@@ -149,7 +151,7 @@ void bound(TraceableScene::Data& data) {
   if (box.isEmpty()) return;
   data.centre_m = box.center();
   data.radius_m = 0.5 * box.diagonal().norm();
-  // Single precision rounds a coordinate x by up to 6e-8 |x|; rays count from the centre.
+  // Single precision rounds a coordinate x by up to 6e-8 |x|; rays are relative to the centre.
   data.ray_offset_m = 5e-7 * data.radius_m;
 }
 

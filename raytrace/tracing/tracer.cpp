@@ -22,11 +22,11 @@ namespace photorque {
 
 namespace {
 
-// The part of the work that belongs to one beam.
+// Precomputed data of one beam.
 struct BeamPlan {
   const Beam* beam;
   LaunchPlan launch;           // of the rays of one replicate: a power of two, at least ray_block
-  uint64_t first_batch;        // its number among the batches of a replicate
+  uint64_t first_batch;        // index among the batches of a replicate
   BandValues power_per_ray_W;  // so that each replicate carries the full power of the beam
   double watt_per_ray;
 };
@@ -41,22 +41,22 @@ struct TraceSums {
     power_balance.absorbed_lanes_W.assign(instances, {});
     for (const Receiver* receiver : all) receivers.emplace_back(receiver->bins(), 0.0);
   }
-  // All but the receivers' bins.
+  // Adds everything except the receivers' bins.
   void add_balance(const TraceSums& other) {
     power_balance.add(other.power_balance);
     segments += other.segments;
   }
 };
 
-// Follows batches of rays to their end. One thread at a time; owns the scratch memory.
+// Follows batches of rays to their end. Used by one thread at a time; owns the scratch memory.
 class BatchTracer {
  public:
-  // All three must outlive this.
+  // All three arguments must outlive this object.
   BatchTracer(const TraceableScene::Data& scene, std::span<const Receiver* const> receivers,
               const TraceOptions& options);
 
-  // Follows batch `batch` of a beam and replicate, whose sequence is `stream`, and adds what it
-  // does to `sums`.
+  // Follows batch `batch` of a beam and replicate with the Sobol sequence `stream`, and adds the
+  // results to `sums`.
   void run(const BeamPlan& plan, const SobolStream& stream, uint32_t batch, const HitOrigin& origin,
            TraceSums& sums);
 
@@ -109,7 +109,7 @@ void BatchTracer::run(const BeamPlan& plan, const SobolStream& stream, uint32_t 
   truncate();
 }
 
-// Ray i has the powers power_W[i · stride …].
+// Traces all rays once. Ray i has the powers power_W[i · stride …] per band.
 void BatchTracer::trace_bounce(const RayList& rays, const double* power_W, int stride,
                                Coherence coherence) {
   sums_->segments += rays.size();
@@ -128,8 +128,8 @@ void BatchTracer::trace_bounce(const RayList& rays, const double* power_W, int s
   }
 }
 
-// Lets the rays that hit nothing escape, closes the gaps that they leave, and gives the others
-// their powers.
+// Books the rays that hit nothing as escaped, removes their rows, and assigns the others their
+// powers.
 void BatchTracer::drop_misses(const RayList& rays, const double* power_W, int stride) {
   Hits& hits = hits_->hits;
   const bool all = compact(*hits_, kept_) == static_cast<int>(rays.size());
@@ -173,7 +173,7 @@ void BatchTracer::leave(const Ray& ray, double power_W) {
   sums_->power_balance.release(context_.scene->centre_m + origin, direction, power_W);
 }
 
-// Books the power that is still under way at the depth limit.
+// Books the power of the remaining rays as truncated, at the depth limit.
 void BatchTracer::truncate() {
   for (size_t i = 0; i < next_.rays.size(); ++i) {
     const double power = total_W(&next_.power_W[i * static_cast<size_t>(bands())]);
@@ -182,17 +182,17 @@ void BatchTracer::truncate() {
   }
 }
 
-// The work of one trace: the same for every replicate.
+// Plan of one trace, equal for every replicate.
 struct Plan {
   std::vector<BeamPlan> beams;
   uint64_t batches = 0;  // per replicate
   uint64_t rays = 0;     // over all replicates
   double emitted_W = 0.0;
-  double untraced_W = 0.0;  // of it: parallel light that meets nothing and is not sent
+  double untraced_W = 0.0;  // part of emitted_W: parallel light that meets nothing and is not sent
 };
 
-// Rays in proportion to the power that is sent, rounded up to powers of two: Sobol sequences are
-// best whole.
+// Distributes the rays to the beams in proportion to the sent power, rounded up to powers of two:
+// Sobol sequences are most uniform at complete powers of two.
 Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from_body,
                std::span<const Beam> beams, const TraceOptions& options) {
   Plan plan;
@@ -230,11 +230,11 @@ Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from
   return plan;
 }
 
-// Parts that the batches of one replicate are cut into; fixed, so that sums do not depend on
-// threads.
+// Number of parts into which the batches of one replicate are divided. It is fixed, so that sums do
+// not depend on the number of threads.
 constexpr uint64_t max_parts = 4;
 
-// Batch tracers between two parts of the work: their memory is made once per thread.
+// Idle batch tracers for reuse: each thread allocates their memory once.
 class TracerPool {
  public:
   TracerPool(const TraceableScene::Data& scene, std::span<const Receiver* const> receivers,
@@ -281,9 +281,9 @@ TraceSums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
   return sums;
 }
 
-// The sums of each replicate, put together from its parts in their order as they come: what has
-// been added is forgotten at once, so that memory holds the replicates and little more, whatever
-// the number of parts.
+// Sums of each replicate, added from its parts in the order of the parts. A part is released as
+// soon as it has been added, so that memory holds little more than the replicates for any number of
+// parts.
 class Replicates {
  public:
   Replicates(size_t count, uint64_t parts, size_t instances,
@@ -298,7 +298,7 @@ class Replicates {
     }
   }
 
-  // Can be called from any thread.
+  // Thread-safe.
   void add(size_t item, TraceSums sums) {
     Replicate& one = replicates_[item / parts_];
     const std::lock_guard lock(one.mutex);
@@ -382,7 +382,7 @@ void check(const TraceOptions& options, std::span<const Beam> beams) {
   if (options.replicates < 8 || options.replicates > 1024) {
     refuse("replicates", options.replicates, "8 to 1024");
   }
-  // A sequence has at most 2^31 points.
+  // A Sobol sequence has at most 2^31 points.
   const uint64_t max_rays = static_cast<uint64_t>(options.replicates) << 31;
   if (options.rays < 1 || options.rays > max_rays) {
     refuse("rays", static_cast<double>(options.rays),
@@ -403,7 +403,7 @@ void check(const TraceOptions& options, std::span<const Beam> beams) {
 }  // namespace
 
 uint64_t trace_bytes_per_bin(int replicates, int threads) {
-  // Two parts of the work for each thread: one that it adds up and one that waits for its turn.
+  // Two parts of the work per thread: one in progress and one that waits to be added.
   constexpr int means_and_pictures = 4;
   const auto numbers = replicates + replicates / 2 + 2 * threads + means_and_pictures;
   return sizeof(double) * static_cast<uint64_t>(numbers);

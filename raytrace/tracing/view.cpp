@@ -11,8 +11,8 @@
 namespace photorque {
 namespace {
 
-// Starts the ray at the sphere that holds the scene when the viewer stands outside, for the sake of
-// single precision.
+// Starts the ray at the sphere around the scene if the viewer is outside it, to keep single
+// precision sufficient.
 Ray nearby_ray(const TraceableScene::Data& scene, const Sight& sight, size_t index) {
   const double ahead =
       (scene.centre_m - sight.origin_m).dot(sight.direction) - 1.001 * scene.radius_m;
@@ -74,7 +74,7 @@ namespace {
 
 constexpr double far_radii = 20.0;  // of the scene
 
-// Start and end of a ray in the lab, for a point on it near the scene.
+// Appends start and end of a ray in the lab frame, for a point on it near the scene.
 void add_ray(std::vector<float>& rays, const Sight& sight, const VisiblePoint& seen,
              const RigidTransform& lab_from_body, double radius_m) {
   const bool is_near = sight.origin_m.norm() < far_radii * radius_m;

@@ -1,4 +1,4 @@
-// The view from a point: the first surfaces along given rays, without light; rays to be drawn.
+// The first surfaces seen from a point along given rays, without light; and rays for drawings.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct Sight {
   Vec3 direction = Vec3::UnitZ();
 };
 
-// The first surface along a sight. Body frame.
+// The first surface along a line of sight, in the body frame.
 struct VisiblePoint {
   bool hit = false;
   bool front = true;  // the front of the surface is seen
@@ -29,17 +29,18 @@ struct VisiblePoint {
   double distance_m = std::numeric_limits<double>::infinity();
 };
 
-// The points seen along sights 0 … count − 1. `sight` is called from many threads.
+// Points seen along the lines of sight 0 … count − 1. `sight` is called from many threads.
 std::vector<VisiblePoint> look(const TraceableScene& scene, size_t count,
                                const std::function<Sight(size_t)>& sight, int threads = 0);
 
-// Whether a lamp is too far from a scene of `radius_m` about the lab origin to be drawn beside it,
-// or has no place at all (parallel light).
+// Whether a lamp cannot be drawn beside a scene of `radius_m` about the lab origin: it is too far
+// away, or has no position (parallel light).
 bool is_too_far_to_draw(const Beam& beam, double radius_m);
 
-// About so many rays, shared evenly by the lamps, as these emit them: lab frame, x, y, z of where
-// each starts (near the scene) and of where it first meets something, or leaves the scene's
-// surroundings. Of far lamps those that pass the scene are left out.
+// About this number of rays, divided evenly between the lamps as they emit them. Result in the lab
+// frame: x, y, z of each ray's start (near the scene) and of its end, where it first meets a
+// surface or leaves the surroundings of the scene. Rays of far lamps that miss the scene's
+// surroundings are omitted.
 std::vector<float> shown_rays(const TraceableScene& scene, const std::vector<Beam>& beams,
                               const RigidTransform& lab_from_body, double radius_m, size_t about);
 

@@ -13,7 +13,7 @@
 namespace photorque {
 namespace {
 
-// Power as the quantity of a shadow ray.
+// Quantity of ShadedSampler: the power of a shadow ray.
 class SampledFlux {
  public:
   using Value = double;
@@ -29,7 +29,7 @@ class SampledFlux {
   const FluxEntries& flux_;
 };
 
-// Largest relative standard error of the irradiance above the floor.
+// Largest relative standard error of the irradiance of bins above the floor.
 double worst_error_of(const FluxMapReceiver& map, const BinSums& sums, double floor) {
   const auto bands = static_cast<size_t>(map.bands().count());
   std::vector<Estimate> bins;
@@ -87,7 +87,7 @@ Gathered gather_on(const Gathering& gathering, const FluxMapReceiver& map,
   }
 }
 
-// Whether absorption depends on the angle of incidence (glass), which bins do not keep.
+// Whether absorption depends on the angle of incidence (glass), which bins do not record.
 bool absorbs_by_angle(const Scene& scene, const SurfaceGrid& grid) {
   return std::any_of(grid.instances.begin(), grid.instances.end(), [&](uint32_t instance) {
     const Instance& of = scene.instances[instance];
@@ -114,7 +114,7 @@ double tracing_cost_s(uint64_t rays) {
 
 bool gathering_pays(size_t pairs, uint64_t rays) {
   constexpr double bearable_s = 2.0;
-  constexpr double worth = 4.0;  // times the rays, whose errors are far larger
+  constexpr double worth = 4.0;  // accepted ratio to the time of rays, whose errors are far larger
   return gathering_cost_s(pairs) <= std::max(bearable_s, worth * tracing_cost_s(rays));
 }
 

@@ -16,8 +16,8 @@ FirstContact::FirstContact(const OpticalSurface& surface, bool front, const Band
   }
 }
 
-// The arriving momentum less the expectation of the leaving one over all components, heat radiation
-// included.
+// Arriving momentum minus the expected leaving momentum over all components, including heat
+// radiation.
 Vec3 FirstContact::by_law(const Vec3& direction, const Vec3& normal) const {
   const Incidence incidence(direction, normal);
   std::array<double, components.size()> carried{};
@@ -101,7 +101,7 @@ bool PlacedLamp::smooth_over(const Ball& ball) const {
   const Vec3 at = emitter_from_body_.point(ball.centre_m);
   if (at.z() < 2.0 * ball.radius_m) return false;
   if (light_->fades_out()) return true;
-  // Kinks are where a circle about the axis touches the rim of an edge's light, d = |R ± h tan θ|.
+  // Kinks lie where a circle about the axis touches the rim of an edge's light, d = |R ± h tan θ|.
   const double d = at.head<2>().norm(), radius_m = light_->radius_m();
   for (const double slope : light_->angles().edge_slopes()) {
     if (std::isinf(slope)) continue;

@@ -9,8 +9,8 @@
 namespace photorque {
 namespace {
 
-// The mean of a function of the coordinates (a, b) over a triangle a, b ≥ 0, a + b ≤ 1; its error
-// by a rule of degree 2.
+// Mean of a function of the coordinates (a, b) over the triangle a, b ≥ 0, a + b ≤ 1. The error is
+// the difference to a rule of degree 2.
 // Source: A. H. Stroud, Approximate Calculation of Multiple Integrals (1971), T2: 2-1.
 template <typename Function>
 Integral<double> checked_mean(const Function& f) {
@@ -38,7 +38,7 @@ size_t OpenLight::add(const BinTile& tile, const Lamps& lamps, const OpenEntries
 size_t OpenLight::add(const BinTile& tile, const Lamps& lamps, LampSides& sides,
                       const OpenEntries& entries) const {
   const Ball ball = plane_.ball_of(tile);
-  std::map<std::vector<size_t>, Lamps> smooth;  // by attempts
+  std::map<std::vector<size_t>, Lamps> smooth;  // lamps by numbers of points to try
   Lamps rest;
   for (const GatherLamp* lamp : lamps) {
     std::vector<size_t> attempts;
@@ -132,7 +132,7 @@ size_t OpenLight::add_smooth(const BinTile& tile, const Ball& ball, const BandMe
   return open;
 }
 
-// A single bin, by its outline.
+// Integrates over a single bin along its outline.
 size_t OpenLight::add_bin(const BinTile& tile, const Ball& ball, const GatherLamp& lamp,
                           Sides& sides, const OpenEntries& entries) const {
   const size_t bin = plane_.bin_at(tile.column, tile.row);
@@ -147,7 +147,7 @@ size_t OpenLight::add_bin(const BinTile& tile, const Ball& ball, const GatherLam
   return patches.empty() ? 0 : 1;
 }
 
-// Power on a patch of a smooth tile.
+// Power on a patch of a tile with smooth irradiance.
 Integral<double> OpenLight::power_on_smooth_W(const SurfacePatch& patch, const GatherLamp& lamp,
                                               double tolerance_W_m2) const {
   const auto irradiance = [&](double a, double b) {
@@ -158,7 +158,7 @@ Integral<double> OpenLight::power_on_smooth_W(const SurfacePatch& patch, const G
   return {patch.area_m2 * mean.value, patch.area_m2 * (mean.error + lamp.table_error_W_m2())};
 }
 
-// Power on a patch by its outline.
+// Power on a patch, along its outline.
 Integral<double> OpenLight::power_W(const SurfacePatch& patch, const GatherLamp& lamp,
                                     double tolerance_W_m2) const {
   const double tolerance_W =
@@ -171,7 +171,7 @@ Integral<double> OpenLight::power_W(const SurfacePatch& patch, const GatherLamp&
   return lamp.power_W(corners, tolerance_W);
 }
 
-// Power on a whole bin by its four sides.
+// Power on a whole bin, from its four sides.
 Integral<double> OpenLight::power_W(int column, int row, const GatherLamp& lamp,
                                     double tolerance_W_m2, Sides& sides) const {
   const size_t bin = plane_.bin_at(column, row);
@@ -186,7 +186,7 @@ Integral<double> OpenLight::power_W(int column, int row, const GatherLamp& lamp,
   if (lamp.light().parallel() || !in_front) return power_W(patch, lamp, tolerance_W_m2);
   const double tolerance_W =
       0.25 * std::min(tolerance_W_m2 * patch.area_m2, tolerance * lamp.light().emitter().power_W());
-  // A side that leads to the right or up from the corner of a bin.
+  // A side from the corner of a bin to the right or upwards.
   const auto side = [&](int right, int up, bool upwards, const Vec3& from_m, const Vec3& to_m) {
     const uint64_t key = 2 * (static_cast<uint64_t>(row + up) * (max_grid_bins + 1) +
                               static_cast<uint64_t>(column + right)) +
@@ -207,7 +207,7 @@ Integral<double> OpenLight::power_W(int column, int row, const GatherLamp& lamp,
 
 void OpenLight::add_patch(const Integral<double>& power_W, const SurfacePatch& patch, size_t bin,
                           const GatherLamp& lamp, const OpenEntries& entries) const {
-  const double positive_W = std::max(power_W.value, 0.0);  // dark but for rounding
+  const double positive_W = std::max(power_W.value, 0.0);  // a dark bin can be negative by rounding
   flux_.add(positive_W, lamp, bin, patch.instance, entries.power_W);
   flux_.add(power_W.error, lamp, bin, patch.instance, entries.bound_W);
 }

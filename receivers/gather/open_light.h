@@ -1,10 +1,10 @@
 // Light on bins that nothing can shade, by quadrature. For the files of this folder only.
 //
-// Where the irradiance of lamps is smooth over a tile of bins, their sum is the polynomial through
-// its values at Chebyshev points, whose last coefficients bound its error; where they are too
-// large, or an edge of a beam crosses the tile, the tile is halved. Single bins that remain are
-// integrated along the outline of the surface in the bin (raytrace/direct/disc_light.h), which
-// edges cut at known points.
+// If the irradiance of some lamps is smooth over a tile of bins, their sum is interpolated by a
+// polynomial through its values at Chebyshev points; the last coefficients bound the error. If they
+// are too large, or if an edge of a beam crosses the tile, the tile is halved. Remaining single
+// bins are integrated along the outline of the surface in the bin (raytrace/direct/disc_light.h),
+// which is divided at the known positions of the edges.
 #pragma once
 
 #include <map>
@@ -18,19 +18,19 @@
 
 namespace photorque {
 
-// The direct entries of a flux map: where power on a bin goes.
+// Adds power to the direct entries of a flux map.
 class FluxEntries {
  public:
   FluxEntries(const GatherPlane& plane, const FluxMapReceiver& map) : plane_(plane), map_(map) {}
 
-  // Adds the power in a band, and the part of it that an instance's surface absorbs.
+  // Adds the power in a band, and the part of it that the instance's surface absorbs.
   void add(double power_W, size_t band, size_t bin, uint32_t instance,
            std::span<double> entries) const {
     const size_t at = map_.entry(bin, band);
     entries[at] += power_W;
     entries[at + 1] += power_W * plane_.surface(instance).absorbed[band];
   }
-  // Adds a power of a lamp, band by band.
+  // Adds power of a lamp to all bands.
   void add(double power_W, const GatherLamp& lamp, size_t bin, uint32_t instance,
            std::span<double> entries) const;
 
@@ -39,7 +39,7 @@ class FluxEntries {
   const FluxMapReceiver& map_;
 };
 
-// Power and the bounds of its error.
+// Power, and the bounds of its error.
 struct OpenEntries {
   std::span<double> power_W, bound_W;
 };
@@ -47,13 +47,13 @@ struct OpenEntries {
 // Immutable; called from many threads at once.
 class OpenLight {
  public:
-  // Aim for the error of a bin, over the lamp's typical irradiance (or, where less, over all of
-  // the lamp's light).
+  // Target for the error of a bin, relative to the lamp's typical irradiance (or to all of the
+  // lamp's light, if that is less).
   static constexpr double tolerance = 3e-7;
 
   using Lamps = std::vector<const GatherLamp*>;
 
-  // `plane` and `flux` must outlive this.
+  // `plane` and `flux` must outlive this object.
   OpenLight(const GatherPlane& plane, const FluxEntries& flux);
 
   // Adds the light of some lamps on all bins of a tile to `entries`, see FluxEntries. Returns the
@@ -61,8 +61,8 @@ class OpenLight {
   size_t add(const BinTile& tile, const Lamps& lamps, const OpenEntries& entries) const;
 
  private:
-  // Contributions of the sides of bins to their power, each for the two bins that share it; see
-  // DiscLight::along_edge_W(). By lamp.
+  // Contributions of the sides of bins to their power, by lamp; two bins share each side. See
+  // DiscLight::along_edge_W().
   using Sides = std::unordered_map<uint64_t, Integral<double>>;
   using LampSides = std::map<const GatherLamp*, Sides>;
 

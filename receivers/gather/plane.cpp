@@ -22,7 +22,7 @@ Vec2 cell_of(const SurfaceGrid& grid, const Vec3& position_m) {
       (grid.v_axis_body.dot(position_m) - grid.v_low) / (grid.v_high - grid.v_low) * grid.height};
 }
 
-// The instances in each bin.
+// Instances in each bin.
 struct BinContent {
   static constexpr uint32_t none = ~0u, several = none - 1;
   std::vector<uint32_t> instance;  // by bin
@@ -49,10 +49,10 @@ struct BinContent {
   }
 };
 
-// A fan of triangles for every piece of a face in the bins that are `wanted`.
+// Adds the pieces of a face in the bins that are `wanted`, as fans of triangles.
 void add_pieces(const SurfaceGrid& grid, const SurfaceFace& face, const std::vector<bool>& wanted,
                 std::vector<CellPiece>& pieces) {
-  // No structured binding: Clang 14 captures none.
+  // Not a structured binding: Clang 14 cannot capture one.
   const Vec3 &a = face.corner_body_m[0], &b = face.corner_body_m[1], &c = face.corner_body_m[2];
   const auto place = [&](const Vec2& weight) {
     return Vec3(a + weight.x() * (b - a) + weight.y() * (c - a));
@@ -70,7 +70,7 @@ void add_pieces(const SurfaceGrid& grid, const SurfaceFace& face, const std::vec
   });
 }
 
-// A counting sort. Returns where each bin begins, and where all end.
+// Counting sort. Returns the first index of each bin, and the end index.
 std::vector<uint32_t> sort_by_bin(std::vector<CellPiece>& pieces, size_t bins) {
   std::vector<uint32_t> begin(bins + 1, 0);
   for (const CellPiece& piece : pieces) ++begin[piece.bin + 1];
@@ -82,7 +82,8 @@ std::vector<uint32_t> sort_by_bin(std::vector<CellPiece>& pieces, size_t bins) {
   return begin;
 }
 
-// The whole bin as one parallelogram, if its only instance fills it once.
+// If the only instance of the bin fills it exactly once, sets `whole` to one parallelogram. Returns
+// whether it does.
 bool fill_whole(const SurfaceGrid& grid, const BinPatches& plane, size_t bin, uint32_t instance,
                 SurfacePatch& whole) {
   if (instance >= BinContent::several) return false;
@@ -223,7 +224,7 @@ GatherLamp::GatherLamp(const Beam& beam, std::shared_ptr<const DiscLight> of,
                  scene_diameter_m(plane.scene())),
       normal_emitter_(emitter_from_body().direction(plane.normal())),
       lean_rad_(std::acos(std::clamp(-normal_emitter_.z(), -1.0, 1.0))) {
-  // Either no ray comes from behind, or nothing of the aperture is behind.
+  // Whether no ray comes from behind, or no part of the aperture is behind.
   const Vec3 way = body_from_emitter().translation_m - plane.patches().point_m;
   const double lowest_m = plane.normal().dot(way) - light().radius_m() * std::sin(lean_rad_);
   lights_front_ = light().lights_front(normal_emitter_) || (!light().parallel() && lowest_m > 0.0);
@@ -277,7 +278,7 @@ std::vector<double> GatherLamp::kinks_across(const SurfacePatch& patch) const {
   const Vec3 corner = emitter_from_body().point(patch.origin_m);
   const Vec3 along = emitter_from_body().direction(patch.edge1_m);
   const Vec3 across = emitter_from_body().direction(patch.edge2_m);
-  // Lines end on two sides of the patch, where a kink comes in or goes out.
+  // The lines end on two sides of the patch, where kinks enter or leave.
   const Vec3 far = corner + along, far_end = patch.triangle ? corner + across : far + across;
   std::vector<double> cuts = light().tangent_lines(corner, along, across);
   for (const auto& side : {light().kinks_along(corner, corner + across),

@@ -1,5 +1,5 @@
-// A flat grid as light is gathered on it: the surface in every bin as pieces to integrate over, and
-// the lamps over it. For the files of this folder only.
+// A flat grid for gathering: the surface in every bin as pieces for integration, and the lamps over
+// it. For the files of this folder only.
 #pragma once
 
 #include <compare>
@@ -15,15 +15,15 @@
 
 namespace photorque {
 
-// A parallelogram (origin + a·edge1 + b·edge2, a, b in [0, 1]) or, with `triangle`, its half with
-// a + b ≤ 1. Body frame.
+// A parallelogram origin + a·edge1 + b·edge2 with a, b in [0, 1]; with `triangle`, the half of it
+// with a + b ≤ 1. Body frame.
 struct SurfacePatch {
   Vec3 origin_m, edge1_m, edge2_m;
   double area_m2 = 0.0;
   uint32_t instance = 0;
   bool triangle = false;
 
-  // Area-preserving from the unit square.
+  // Area-preserving map of the unit square to the patch.
   Vec3 at(double s, double t) const;
 };
 
@@ -31,21 +31,20 @@ struct SurfacePatch {
 struct BinPatches {
   std::vector<SurfacePatch> patches;
   std::vector<uint32_t> first;  // bin b has patches first[b] … first[b + 1] − 1
-  Vec3 point_m = Vec3::Zero();  // of the plane
-  Vec3 normal = Vec3::UnitZ();  // of the surfaces' fronts
+  Vec3 point_m = Vec3::Zero();  // a point of the plane
+  Vec3 normal = Vec3::UnitZ();  // normal of the surfaces' fronts
 
+  // Patches of a bin.
   std::span<const SurfacePatch> of(size_t bin) const {
     return std::span(patches).subspan(first[bin], first[bin + 1] - first[bin]);
   }
 };
 
-// True when the grid lies over a plane and all its faces are in one plane, to 1e-6 of the extent.
+// Whether the grid is over a plane and all its faces lie in one plane, to 1e-6 of the extent.
 bool is_flat(const Scene& scene, const SurfaceGrid& grid);
 
-// The pieces of a flat grid; a bin that one instance fills is a single parallelogram.
+// Pieces of a flat grid; a bin that one instance fills is a single parallelogram.
 BinPatches bin_patches(const Scene& scene, const SurfaceGrid& grid);
-
-// The surface and the lamps as gathering uses them. For the files of this folder only.
 
 // A rectangle of bins.
 struct BinTile {
@@ -57,7 +56,8 @@ struct BinTile {
   std::pair<BinTile, BinTile> halves() const;
 };
 
-// A grid cut into squares of at most 32 bins a side, of even sizes: the items of parallel work.
+// Divides a grid into squares of at most 32 bins a side, of similar sizes: the items of parallel
+// work.
 std::vector<BinTile> squares_of(const SurfaceGrid& grid);
 
 // One side of the flat surface under a grid. Body frame.
@@ -69,7 +69,7 @@ class GatherPlane {
   const TraceableScene& scene() const { return scene_; }
   const SurfaceGrid& grid() const { return grid_; }
   const Bands& bands() const { return bands_; }
-  // The optical surface of an instance on this side.
+  // Optical surface of an instance on this side.
   const OpticalSurface& surface(uint32_t instance) const {
     const Instance& of = scene_.scene().instances[instance];
     return scene_.scene().surfaces[side_ == Side::back ? of.back_surface : of.front_surface];
@@ -77,18 +77,18 @@ class GatherPlane {
   const BinPatches& patches() const { return patches_; }
   const Vec3& normal() const { return patches_.normal; }  // of the lit side
 
-  // The point at column + u, row + v of the grid of bins, (0, 0) being the corner of the first.
+  // The point at column + u, row + v of the grid of bins; (0, 0) is the corner of the first bin.
   Vec3 point_m(double column, double row) const {
     return corner_m_ + column * column_m_ + row * row_m_;
   }
-  // The number of a bin.
+  // Index of a bin.
   size_t bin_at(int column, int row) const {
     return static_cast<size_t>(row) * static_cast<size_t>(grid_.width) +
            static_cast<size_t>(column);
   }
-  // Holds all bins of a tile.
+  // Ball that contains all bins of a tile.
   Ball ball_of(const BinTile& tile) const;
-  // True when the bin is one whole parallelogram of the grid.
+  // Whether the bin is one whole parallelogram of the grid.
   bool whole(size_t bin) const {
     const auto patches = patches_.of(bin);
     return patches.size() == 1 && !patches[0].triangle;
@@ -106,29 +106,29 @@ class GatherPlane {
 // One beam relative to the plane.
 class GatherLamp : public PlacedLamp {
  public:
-  // `light` is of the beam's emitter.
+  // `light` belongs to the beam's emitter.
   GatherLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,
              const RigidTransform& body_from_lab, const GatherPlane& plane);
 
   const Vec3& normal_emitter() const { return normal_emitter_; }  // of the lit side
-  // Irradiance without shadow at a point of the plane.
+  // Unshaded irradiance at a point of the plane.
   double irradiance_W_m2(const Vec3& at_body_m) const {
     return irradiance_at_W_m2(emitter_from_body().point(at_body_m));
   }
-  // Irradiance without shadow on a tile at places (column, row) in [0, 1]² of all pairs of
-  // `fraction`.
+  // Fills the unshaded irradiance on a tile at the positions (column, row) in [0, 1]² of all pairs
+  // of `fraction`.
   void fill_irradiance(const GatherPlane& plane, const BinTile& tile,
                        std::span<const double> fraction, Eigen::MatrixXd& W_m2) const;
-  // Irradiance and flow of momentum without shadow at a point of the plane, body frame.
+  // Unshaded irradiance and momentum flow at a point of the plane, body frame.
   ArrivingLight arriving(const Vec3& at_body_m) const;
-  // Error of irradiance_W_m2(), as far as it is the table's.
+  // Error of irradiance_W_m2() due to the table; 0 without table.
   double table_error_W_m2() const { return table_ ? table_->error_W_m2() : 0.0; }
-  // Power on a piece of the plane with these corners (body frame), see
+  // Unshaded power on a piece of the plane with these corners (body frame), see
   // DiscLight::power_through_W().
   Integral<double> power_W(std::span<const Vec3> corners_m, double tolerance_W) const;
-  // Gives the lamp a table of its light, for all heights of heights_m().
+  // Sets the table of the lamp's light, which must cover the heights of heights_m().
   void use(std::shared_ptr<const IrradianceTable> table) { table_ = std::move(table); }
-  // The least and the largest height of the whole grid above the aperture.
+  // Minimum and maximum height of the grid above the aperture.
   std::pair<double, double> heights_m(const GatherPlane& plane) const;
   // Positions along a straight line of the plane at which integrals of its light are divided, see
   // DiscLight::kinks_along(); the last is 1.
@@ -136,10 +136,10 @@ class GatherLamp : public PlacedLamp {
   // Fractions of the second edge of a patch at which an integral over lines along its first edge is
   // divided; the last is 1.
   std::vector<double> kinks_across(const SurfacePatch& patch) const;
-  // Every ray of the beam that meets the plane does so from the lit side (all but 1e-9 of them).
+  // Whether every ray that meets the plane does so from the lit side (all but 1e-9 of the flux).
   bool lights_front() const { return lights_front_; }
 
-  // No ray of the beam comes to the ball from the lit side.
+  // Whether no ray of the beam reaches the ball from the lit side.
   bool misses(const Ball& ball) const;
 
  private:
@@ -151,7 +151,7 @@ class GatherLamp : public PlacedLamp {
   std::shared_ptr<const IrradianceTable> table_;  // may be null
   Vec3 normal_emitter_;
   bool lights_front_ = false;
-  double lean_rad_ = 0.0;  // between the axis and the way into the plane
+  double lean_rad_ = 0.0;  // angle between the axis and the direction into the plane
 };
 
 // A bin that may be in the shadow of something, for one lamp.

@@ -24,7 +24,7 @@ double remainder_of(const Eigen::MatrixXd& highest) {
 }  // namespace
 
 ChebyshevTiles::ChebyshevTiles(const SurfaceGrid& grid) {
-  // All sizes of tiles that halving leads to.
+  // All tile sizes that halving produces.
   std::set<int> sizes;
   const std::function<void(int)> halve = [&](int side) {
     if (!sizes.insert(side).second || side < 2) return;

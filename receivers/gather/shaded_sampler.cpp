@@ -38,9 +38,9 @@ size_t Gathering::shaded_pairs() const {
   return pairs;
 }
 
-// A table of a light for all its lamps above the plane, where it pays.
+// Makes a table of a light for all its lamps above the plane, if it serves enough pairs.
 void Gathering::make_table(const DiscLight& light, int threads) {
-  constexpr size_t min_pairs = 2000;  // of a bin and a lamp
+  constexpr size_t min_pairs = 2000;  // pairs of a bin and a lamp
   double low_m = INFINITY, high_m = 0.0;
   std::vector<GatherLamp*> served;
   for (GatherLamp& lamp : lamps_) {
@@ -57,7 +57,7 @@ void Gathering::make_table(const DiscLight& light, int threads) {
   for (GatherLamp* lamp : served) lamp->use(shared);
 }
 
-// Splits a tile until nothing can shade it, or something shades all of it, or it is one bin.
+// Splits a tile until nothing can shade it, something shades all of it, or it is one bin.
 void Gathering::descend(const BinTile& tile, uint32_t index, std::span<const uint32_t> candidates,
                         TileSight& sight) const {
   const GatherLamp& lamp = lamps_[index];

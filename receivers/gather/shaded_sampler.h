@@ -1,5 +1,5 @@
-// Bins that nothing can shade, for each lamp, and shadow rays between the other bins and apertures.
-// For the files of this folder only.
+// Finds the bins that nothing can shade, for each lamp, and sends shadow rays between the other
+// bins and the apertures. For the files of this folder only.
 #pragma once
 
 #include <algorithm>
@@ -18,24 +18,24 @@
 
 namespace photorque {
 
-// The side of a flat grid that light is gathered on.
+// The side of a flat grid on which light is gathered.
 struct GatherSide {
   const SurfaceGrid& grid;
   const Bands& bands;
   Side side;  // front or back
 };
 
-// A tile that nothing can shade for one lamp, and a ball that holds it.
+// A tile that nothing can shade from one lamp, and a ball that contains it.
 struct OpenTile {
   BinTile tile;
   Ball ball;
   uint32_t lamp;
 };
 
-// Visibility of one square of bins, the item of parallel work.
+// Visibility in one square of bins, an item of parallel work.
 struct TileSight {
-  std::vector<OpenTile> open;      // lamp by lamp
-  std::vector<ShadedPair> shaded;  // likewise
+  std::vector<OpenTile> open;      // sorted by lamp
+  std::vector<ShadedPair> shaded;  // sorted by lamp
 };
 
 // The surface, the lamps and the bodies between them, at one attitude.
@@ -48,7 +48,7 @@ class Gathering {
   const GatherPlane& plane() const { return plane_; }
   const GatherLamp& lamp(uint32_t index) const { return lamps_[index]; }
   const std::vector<TileSight>& sights() const { return sights_; }
-  size_t shaded_pairs() const;  // of a bin and a lamp
+  size_t shaded_pairs() const;  // pairs of a bin and a lamp
 
  private:
   void make_table(const DiscLight& light, int threads);
@@ -64,7 +64,7 @@ class Gathering {
 // Whether gathering is possible: one flat surface and lamps with uniform apertures.
 bool is_gatherable(const Scene& scene, const SurfaceGrid& grid, std::span<const Beam> beams);
 
-// A ray that may reach a bin: `power_W` of its light if nothing is in the way. Emitter's frame.
+// A ray that may reach a bin; unless blocked, it carries `power_W`. Emitter's frame.
 struct CandidateRay {
   double power_W;
   Vec3 at_m, from_m;
@@ -78,7 +78,7 @@ struct PlacedPatch {
   double fraction;  // of the bin's area
 };
 
-// Samples the light of one lamp on bins. A Quantity states the result:
+// Samples the light of one lamp on bins. A Quantity defines the result:
 //   using Value = …;  // a sum of rays' contributions
 //   Value of(const CandidateRay&, const GatherLamp&) const;
 //   void add(const Value&, const GatherLamp&, size_t bin, uint32_t instance,
@@ -123,7 +123,7 @@ class ShadedSampler {
   }
 
  private:
-  // A bin, and its patches among `placed_`.
+  // A bin and the range of its patches in `placed_`.
   struct Bin {
     uint32_t bin, first, end;
     double area_m2;  // per point
@@ -156,7 +156,7 @@ class ShadedSampler {
     return placed_[bin.end - 1];
   }
 
-  // Lines of one bin, from `count` points of the block.
+  // Adds rays to one bin, from `count` points of the block.
   void add_lines(const Bin& bin, size_t first, size_t count) {
     const size_t dimension = bin.directed ? 0 : 2;
     for (size_t i = first; i < first + count; ++i) {
@@ -180,14 +180,15 @@ class ShadedSampler {
     }
   }
 
-  // Irradiance for the direction of ray i of the block, and where the line to `at` begins.
+  // Irradiance for the direction of ray i of the block; sets `from` to the start of the line to
+  // `at`.
   double weigh_direction(size_t i, const Vec3& at, Vec3& from) const {
     const Vec3 direction(emitted_.direction[0][i], emitted_.direction[1][i],
                          emitted_.direction[2][i]);
     return lamp_.along_direction_W_m2(direction, at, lamp_.normal_emitter(), from);
   }
 
-  // Irradiance for the point of the aperture of ray i.
+  // Irradiance for the aperture point of ray i; sets `from` to this point.
   double weigh_point(size_t i, const Vec3& at, Vec3& from) const {
     from = {emitted_.origin_m[0][i], emitted_.origin_m[1][i], emitted_.origin_m[2][i]};
     return lamp_.from_point_W_m2(from, at, lamp_.normal_emitter());
@@ -207,7 +208,7 @@ class ShadedSampler {
     ray.length_m = static_cast<float>(length - ray_offset_m_);
   }
 
-  // Traces the lines; what neighbours bring to the same bin is added at once.
+  // Traces the rays and adds the contributions of consecutive rays to the same bin together.
   void finish(std::span<double> entries) {
     find_shadows(plane_.scene(), std::span(shadow_).first(count_), lit_);
     for (size_t i = 0; i < count_;) {
@@ -241,8 +242,8 @@ class ShadedSampler {
   std::array<uint8_t, ray_block> lit_;
 };
 
-// `open` and, replicate by replicate, what shadow rays find on the bins that may be shaded, with
-// `points` rays each (a power of two). Adds the number of rays to `rays`.
+// For each replicate: `open` plus the light on the bins that may be shaded, from `points` shadow
+// rays each (a power of two). Adds the number of rays to `rays`.
 template <typename Quantity>
 std::vector<double> sample_shaded(const Gathering& gathering, const Quantity& quantity,
                                   std::span<const double> open, const GatherOptions& options,

@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t torque_axes = 3;
 
-// Effect of light on the surfaces of a plane, per power of light: its torque about a point.
+// Quantity of ShadedSampler: the torque of light about a point.
 class Torque {
  public:
   using Value = Vec3;
@@ -27,7 +27,7 @@ class Torque {
     return torque(at_m, lamp.arriving(at_m), lamp, instance);
   }
 
-  // A lit ray's torque [N m].
+  // Torque of a lit ray [N m].
   Vec3 of(const CandidateRay& ray, const GatherLamp& lamp) const {
     const Vec3 at_m = lamp.body_from_emitter().point(ray.at_m);
     const Vec3 way = at_m - lamp.body_from_emitter().point(ray.from_m);
@@ -55,7 +55,7 @@ class Torque {
   Vec3 about_m_;
 };
 
-// Torque on bins that nothing can shade.
+// Adds the torque on bins that nothing can shade.
 class OpenTorque {
  public:
   OpenTorque(const GatherPlane& plane, const Torque& torque)
@@ -103,7 +103,7 @@ class OpenTorque {
  private:
   static constexpr double tolerance = 1e-6;
 
-  // Mean torques per area over the bins of a tile, and the error of all.
+  // Mean torques per area over the bins of a tile; `error` is common to all of them.
   std::array<Eigen::MatrixXd, torque_axes> means_of(const BinTile& tile, size_t nodes,
                                                     const GatherLamp& lamp, uint32_t instance,
                                                     double& error) const {
@@ -126,7 +126,7 @@ class OpenTorque {
     return values;
   }
 
-  // The instance of a tile, if all of its bins are completely on one instance.
+  // The instance of a tile if all of its bins are completely on one instance; else empty.
   std::optional<uint32_t> only_instance(const BinTile& tile) const {
     std::optional<uint32_t> instance;
     for (int row = tile.row; row < tile.row + tile.rows; ++row) {
@@ -151,7 +151,8 @@ class OpenTorque {
     }
   }
 
-  // One integral within another over each patch, the inner one cut at the kinks of the light.
+  // Integrates over each patch by nested integrals; the inner one is divided at the kinks of the
+  // light.
   size_t add_patches(const BinTile& tile, const GatherLamp& lamp, double tolerance_N_m,
                      std::span<double> torque_N_m, std::span<double> bound_N_m) const {
     constexpr int depth = 12;
@@ -195,10 +196,10 @@ class OpenTorque {
   const GatherPlane& plane_;
   const Torque& torque_;
   ChebyshevTiles tiles_;
-  double arm_m_ = 0.0;  // the longest lever
+  double arm_m_ = 0.0;  // maximum distance from the reference point
 };
 
-// The torque of light on one side, added to `total`.
+// Adds the torque of light on one side to `total`.
 void add_side(const TraceableScene& scene, const RigidTransform& lab_from_body,
               std::span<const Beam> beams, const TorqueMapReceiver& map, Side side,
               const GatherOptions& options, Gathered& total) {

@@ -8,14 +8,14 @@ namespace {
 
 constexpr Eigen::Index per_wrench = std::tuple_size_v<WrenchComponents>;
 
-// Azimuths without the last, if that repeats the first.
+// Azimuths without the last one if it repeats the first.
 std::span<const double> once_around(const std::vector<double>& around_rad) {
   constexpr double turn = 6.28318530717958647693;
   const bool closed = std::abs(around_rad.back() - around_rad.front() - turn) < 1e-9;
   return std::span(around_rad).first(around_rad.size() - (closed ? 1 : 0));
 }
 
-// Both halves in twelve columns.
+// Matrix with one row per node; six columns for each of the two estimates.
 Eigen::MatrixXd values_of(std::span<const WrenchPair> wrenches, size_t nodes) {
   Eigen::MatrixXd values(static_cast<Eigen::Index>(nodes), 2 * per_wrench);
   for (size_t n = 0; n < nodes; ++n) {
@@ -28,7 +28,7 @@ Eigen::MatrixXd values_of(std::span<const WrenchPair> wrenches, size_t nodes) {
   return values;
 }
 
-// Mean over the sphere of the product of both halves' remainders beyond the series.
+// Mean over the sphere of the product of both estimates' remainders beyond the series.
 double unresolved(const Eigen::MatrixXd& rest, std::span<const double> elevation_rad,
                   Eigen::Index k) {
   double sum = 0.0, weights = 0.0;
@@ -41,13 +41,13 @@ double unresolved(const Eigen::MatrixXd& rest, std::span<const double> elevation
   return std::max(0.0, sum / weights);
 }
 
-// The common and the different power of both halves, for their mean, in one degree.
+// Common power and noise power of both estimates in one degree, for their mean.
 struct Powers {
   double common = 0.0, noise = 0.0;
 };
 
 Powers powers_of(const SphereSeries& halves, int degree, Eigen::Index from) {
-  // Force and torque have three components each, which share their factors.
+  // Force and torque have three components each, which share one factor.
   Powers powers;
   for (Eigen::Index k = from; k < from + 3; ++k) {
     const double both = halves.mean_product(degree, k, per_wrench + k);

@@ -1,4 +1,4 @@
-// Smoothing of a table of force and torque over the directions of light that contains noise.
+// Smoothing of a noisy table of force and torque over the directions of light.
 //
 // Every direction has two estimates from independent rays. For each degree of the spherical
 // harmonics, the part that both have in common is the signal, and the rest is noise. Each degree is
@@ -16,7 +16,7 @@
 
 namespace photorque {
 
-// A wrench and the same from other rays.
+// Two estimates of a wrench from independent rays.
 struct WrenchPair {
   WrenchComponents first{}, second{};
 };
@@ -24,7 +24,7 @@ struct WrenchPair {
 // Force and torque over the sphere.
 struct SmoothWrench {
   SphereSeries series;          // six functions
-  WrenchComponents error{};     // of each: root mean square over the sphere
+  WrenchComponents error{};     // root mean square over the sphere, per component
   std::vector<double> at_node;  // six numbers for each node of the table
 };
 

@@ -24,7 +24,7 @@ bool is_whole_sphere(const WrenchTable& table) {
          spans(table.polar_rad, pi / 2);
 }
 
-// Values of the header may hold neither line breaks nor a second colon.
+// Header values must not contain line breaks or a second colon.
 std::string header_value(std::string text) {
   std::replace(text.begin(), text.end(), ':', '=');
   std::replace_if(

@@ -1,9 +1,9 @@
-// Light-pressure tables in the SPAD layout (.spo) that GMAT reads.
+// Light-pressure tables in the SPAD format (.spo) that GMAT reads.
 //
-// A text of "Key : value" lines, the ranges of azimuth and elevation, and a row per direction with
-// azimuth and elevation of the Sun in body axes [deg], force over pressure [m²] and, optionally,
-// torque over pressure [m³]. GMAT (R2026a) requires azimuths −180 … 180 and elevations −90 … 90 deg
-// in even steps and reads the force alone, of analysis type "Area".
+// The file consists of "Key : value" lines, the ranges of azimuth and elevation, and one row per
+// direction. A row contains azimuth and elevation of the Sun in body axes [deg], force over
+// pressure [m²] and, optionally, torque over pressure [m³]. GMAT (R2026a) requires azimuths −180 …
+// 180 and elevations −90 … 90 deg in equal steps. It reads only the force, of analysis type "Area".
 #pragma once
 
 #include <string>
@@ -14,17 +14,17 @@ namespace photorque {
 
 // The content of a file.
 struct SpadFile {
-  std::string system;  // content of the table
-  // Force and torque under light of 1 Pa pressure (so that 1 m² is 1 N): scale by the irradiance
-  // over the speed of light. About the file's centre of mass, taken as metres: the format does not
-  // name its unit.
+  std::string system;  // description of the table
+  // Force and torque under light of 1 Pa pressure (1 m² corresponds to 1 N); scale by the
+  // irradiance divided by the speed of light. About the file's centre of mass, in metres: the
+  // format does not state its unit.
   WrenchTable table;
-  bool has_torque = false;  // else the torques are left out
+  bool has_torque = false;  // if false, the file has no torques
 };
 
-// The text of a file. The table must be of azimuth and elevation, whole and regular (−180 … 180 and
-// −90 … 90 deg), InputError otherwise; it is made single-valued first. Forces and torques keep 12
-// digits. `provenance` becomes a header line.
+// Text of a file. The table must be a regular grid of azimuth and elevation over the whole sphere
+// (−180 … 180 and −90 … 90 deg); throws InputError otherwise. It is made single-valued first.
+// Forces and torques have 12 digits. `provenance` becomes a header line.
 std::string format_spad(const SpadFile& file, const std::string& provenance);
 
 }  // namespace photorque

@@ -79,7 +79,7 @@ class SmoothComponent {
     size_t index;
     bool opposite;  // beyond a pole: azimuth + 180 deg
   };
-  // The weights of all azimuths at one polar angle.
+  // Weights of all azimuths at one polar angle.
   struct Row {
     size_t polar;
     std::vector<double> weights;
@@ -127,7 +127,7 @@ class SmoothComponent {
   int axis_;
 };
 
-// A map of `value(distance from the centre, azimuth)` over the disc of radius `reach`.
+// Map of `value(distance from the centre, azimuth)` over the disc of radius `reach`.
 template <typename Value>
 Map disc(double reach, const Value& value) {
   Map map;
@@ -153,8 +153,8 @@ Map disc(double reach, const Value& value) {
   return map;
 }
 
-// Magnitude of the torque whose components are the maps "torque_x_NAME" + ending, … The error is
-// the component of the errors along the torque.
+// Map of the magnitude of the torque, from the maps "torque_x_NAME" + ending and so on. The error
+// is the component of the errors along the torque.
 Map size_of(const std::vector<Map>& maps, const std::string& name, const std::string& ending,
             const std::string& seen_from) {
   std::array<const Map*, 3> parts{};
@@ -186,7 +186,7 @@ std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name) {
     const auto component = SmoothComponent::of(table, axis);
     if (!component) return maps;
     const std::string stem = std::string("torque_") + "xyz"[axis] + "_" + name;
-    // The title omits the name "body", which stands for the whole platform.
+    // "body" stands for the whole platform; the title omits it.
     const std::string title = std::string("Torque of light about body ") + "xyz"[axis] +
                               (name == "body" ? "" : " on " + name);
     if (table.angles == WrenchTable::Angles::tilt_heading) {
@@ -286,7 +286,7 @@ Table rows(const WrenchTable& table, const std::string& name) {
   return result;
 }
 
-// The step of an axis with equally spaced nodes, else 0.
+// Step of an axis with equally spaced nodes; 0 otherwise.
 double regular_step_rad(const std::vector<double>& axis_rad) {
   if (axis_rad.size() < 2) return 0.0;
   const double step =

@@ -9,8 +9,8 @@ namespace {
 
 constexpr size_t wrench_components = std::tuple_size_v<WrenchComponents>;
 
-// Names as short as they can be while no two are equal: nodes, else paths, else paths with their
-// material, else numbered.
+// Shortest names that are unique: nodes, else paths, else paths with material, else paths with
+// number.
 std::vector<std::string> unique_names(const Scene& scene, const std::vector<uint32_t>& instances) {
   const std::function<std::string(uint32_t)> spellings[] = {
       [&](uint32_t i) { return scene.instances[i].node; },
@@ -26,7 +26,7 @@ std::vector<std::string> unique_names(const Scene& scene, const std::vector<uint
   return names;
 }
 
-// Adds the hits [begin, end), all on one part.
+// Adds the hits [begin, end), which are all on one part.
 void add_run(const Hits& hits, int begin, int end, const Vec3& about_m, std::span<double> sums) {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
@@ -71,7 +71,7 @@ size_t WrenchReceiver::bins() const {
   return 2 * part_names_.size() * wrench_components;
 }
 
-// Neighbouring hits mostly share an instance and a depth: a run of them is summed in registers.
+// Neighbouring hits usually share instance and depth; a run of them is summed in registers.
 void WrenchReceiver::score(const Hits& hits, std::span<double> sums) const {
   for (int begin = 0, end = 0; begin < hits.count; begin = end) {
     const auto first = static_cast<size_t>(begin);
@@ -88,8 +88,8 @@ void WrenchReceiver::score(const Hits& hits, std::span<double> sums) const {
   }
 }
 
-// The sum of the groups of six bins that count. Bounds of errors, which the scatter of the
-// replicates does not show, add up.
+// Sum over the groups of six bins for which counts(group) is true. Error bounds, which the scatter
+// of the replicates does not show, are added linearly.
 WrenchEstimate WrenchReceiver::estimate(const BinSums& sums,
                                         const std::function<bool(size_t)>& counts) const {
   std::vector<WrenchComponents> replicates(static_cast<size_t>(sums.replicates));

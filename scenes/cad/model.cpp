@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::pair<const char*, double>, 6> units = {
     {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}}};
 
-// Half of the light is absorbed: nothing was stated.
+// Assumed optics: half of the light is absorbed, half is scattered.
 SettingsNode unknown_optics() {
   SettingsNode::Table table;
   table["absorptance"] = {0.5};
@@ -94,7 +94,7 @@ GltfModel read_cad_bytes(const std::string& bytes, const std::string& file, CadF
   }
   const std::string text = gltf_text(as_gltf(std::move(parts), conventions));
   GltfOptions inside = options;
-  // The unit last, so that the numbers of the file stay as they are.
+  // Each number of the file is multiplied by the unit only here.
   inside.metres_per_unit = conventions.metres_per_unit;
   GltfModel model = read_gltf_bytes(
       text, file, [](const std::string&) { return std::nullopt; }, inside);

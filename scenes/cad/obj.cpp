@@ -42,7 +42,7 @@ class ObjReader {
       if (!lines_.next(line)) break;
       joined_ += line;
     }
-    // A comment may follow.
+    // Removes a comment.
     words_ = words_of(std::string_view(joined_).substr(0, joined_.find('#')));
     return true;
   }
@@ -77,7 +77,7 @@ class ObjReader {
     return words_.empty() ? "" : joined_text(std::span(words_).subspan(1), " ");
   }
 
-  // x, y, z, then a weight or a colour, which are ignored.
+  // Reads x, y, z; a weight or colour after them is ignored.
   void read_vertex() {
     if (words_.size() < 4 || words_.size() > 8) {
       throw wrong("v", std::to_string(words_.size() - 1) + " values", "three");
@@ -89,7 +89,8 @@ class ObjReader {
     vertices_.push_back(at);
   }
 
-  // The vertex of "7", "7/1", "7//3", "7/1/3" or "-1": counted from 1, or back from the last.
+  // Index of the vertex of "7", "7/1", "7//3", "7/1/3" or "-1": counted from 1, or backwards from
+  // the last.
   uint32_t vertex_of(std::string_view word) const {
     const std::string_view number = word.substr(0, word.find('/'));
     const std::optional<double> index = number_in(number);
@@ -140,7 +141,7 @@ class ObjReader {
     places_ = &places_of_[key];
   }
 
-  // The place of a vertex of the file in the part's mesh.
+  // Index of a vertex of the file in the part's mesh.
   uint32_t used(uint32_t vertex) {
     const auto [entry, is_new] =
         places_->try_emplace(vertex, static_cast<uint32_t>(part_->mesh.vertices_m.size()));

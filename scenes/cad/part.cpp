@@ -15,7 +15,7 @@ Vec3 mean_normal(const std::vector<Vec3>& corners) {
   return normal;
 }
 
-// Seen along the normal, in a plane with a right-handed pair of axes.
+// Projects the corners along the normal on a plane with right-handed axes.
 std::vector<Vec2> flattened(const std::vector<Vec3>& corners, const Vec3& normal) {
   const Vec3 z = normal.normalized();
   Vec3::Index least = 0;

@@ -14,14 +14,14 @@ namespace {
 
 constexpr size_t stl_header_bytes = 80, count_bytes = 4, facet_bytes = 50;
 
-// Corners at the same place, to the bit, as one vertex.
+// Merges corners with identical coordinates into one vertex.
 class CornerPool {
  public:
   explicit CornerPool(Mesh& mesh) : mesh_(mesh) {}
 
   uint32_t add(const Vec3& at) {
     std::string key(sizeof(double) * 3, '\0');
-    const Vec3 plain = at + Vec3::Zero();  // −0 is 0
+    const Vec3 plain = at + Vec3::Zero();  // turns −0 into 0
     std::memcpy(key.data(), plain.data(), key.size());
     const auto [entry, is_new] =
         places_.try_emplace(std::move(key), static_cast<uint32_t>(places_.size()));
@@ -34,7 +34,7 @@ class CornerPool {
   std::unordered_map<std::string, uint32_t> places_;
 };
 
-// Whether the length is that of a binary file: many writers begin binary files with "solid", too.
+// Whether the length is that of a binary file. Many binary files begin with "solid", too.
 bool has_binary_length(std::string_view bytes) {
   if (bytes.size() < stl_header_bytes + count_bytes) return false;
   const uint64_t count = little_endian_32(bytes, stl_header_bytes);
@@ -57,7 +57,7 @@ std::vector<Part> read_binary(std::string_view bytes, const std::string& file,
     for (size_t corner = 0; corner < 3; ++corner) {
       Vec3 at;
       for (size_t k = 0; k < 3; ++k) {
-        // The words after the normal.
+        // Skips the normal.
         at[static_cast<Eigen::Index>(k)] =
             std::bit_cast<float>(little_endian_32(bytes, start + 12 + 12 * corner + 4 * k));
       }
@@ -78,8 +78,8 @@ bool same_word(std::string_view word, std::string_view keyword) {
   });
 }
 
-// Reads the words of a text file one by one. Keywords may be in capitals, and line ends are blanks,
-// but that a name ends at the end of its line.
+// Reads the words of a text file one by one. Keywords are accepted in any case. Line ends count as
+// blanks, except that a name ends at the end of its line.
 class TextReader {
  public:
   TextReader(std::string_view text, const std::string& file, const std::string& name)
@@ -124,14 +124,14 @@ class TextReader {
     ++word_;
   }
 
-  // Whether a word on this line begins a facet, rather than belong to a name.
+  // Whether a word on this line begins a facet instead of belonging to a name.
   bool begins_facet(size_t word) const {
     return same_word(words_[word], "facet") && word + 1 < words_.size() &&
            (same_word(words_[word + 1], "normal") || same_word(words_[word + 1], "outer"));
   }
 
-  // The text that follows a keyword: the rest of its line, or in a file of one line what is before
-  // the next facet or solid.
+  // The name after a keyword: the rest of the line; in a file of one line, the text up to the next
+  // facet or solid.
   std::string read_name(bool opens) {
     const auto ends = [&](size_t word) {
       return opens ? begins_facet(word) : same_word(words_[word], "solid");
@@ -194,8 +194,8 @@ class TextReader {
   std::vector<Part> parts_;
 };
 
-// Text begins with "solid", as many binary files do too: those hold zeros, which text may have at
-// its end alone.
+// Whether the file is text. Both kinds may begin with "solid", but a binary file contains zeros
+// before its end.
 bool is_text(std::string_view bytes) {
   const std::string_view start = bytes.substr(0, 1000);
   const size_t zero = start.find('\0');

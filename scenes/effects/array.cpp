@@ -1,4 +1,4 @@
-// Effects on the array: the light that enters its cells, its circuit and its tracker.
+// Effects on the array: light that enters its cells, its circuit, its tracker.
 #include "scenes/effects/kind.h"
 
 namespace photorque {
@@ -6,7 +6,7 @@ namespace photorque {
 std::vector<LightEffectKind> array_effect_kinds() {
   using Index = LightEffectKind::Index;
   using Numbers = std::span<const double>;
-  // Light counts T(θ)/T(0), T by Fresnel.
+  // The light is multiplied by T(θ)/T(0), where T is Fresnel's transmittance.
   const EffectParameter refractive_index = {.key = "refractive_index",
                                             .meaning = "refractive index of the glass",
                                             .neutral = 1.0,
@@ -15,7 +15,7 @@ std::vector<LightEffectKind> array_effect_kinds() {
                                             .highest = 1.0,
                                             .form = EffectParameter::Form::slant};
   return {
-      // Light that enters every cell times `factor`. A scan does not see it.
+      // Multiplies the light that enters every cell by `factor`. Not visible in a scan.
       {.name = "soiling",
        .explanation = "dirt absorbs the same fraction of the light of all cells",
        .parameters = {{.key = "factor",
@@ -33,7 +33,7 @@ std::vector<LightEffectKind> array_effect_kinds() {
        .act = [refractive_index](
                   LightState& state, size_t,
                   Numbers x) { state.glass_index = value_of(refractive_index, x[0]); }},
-      // The photocurrent of a cell times `factor`. A scan does not see it.
+      // Multiplies the photocurrent of a cell by `factor`. Not visible in a scan.
       {.name = "cell_degraded",
        .explanation = "a cell converts less of its light into current than the others",
        .index = Index::cell,
@@ -47,7 +47,7 @@ std::vector<LightEffectKind> array_effect_kinds() {
        .in_scans = false,
        .act = [](LightState& state, size_t index,
                  Numbers x) { state.cell_current[index] *= 1.0 + x[0]; }},
-      // The light over the rectangle of a cell times `factor`. A scan sees it.
+      // Multiplies the light on the rectangle of a cell by `factor`. Visible in a scan.
       {.name = "cell_shaded",
        .explanation = "an object over a cell takes a fraction of its light",
        .index = Index::cell,
@@ -68,7 +68,7 @@ std::vector<LightEffectKind> array_effect_kinds() {
        .in_scans = false,
        .in_circuit = true,
        .act = [](LightState& state, size_t index, Numbers) { state.string_open[index] = true; }},
-      // The cells of the diode give no voltage.
+      // The cells of the diode give zero voltage.
       {.name = "bypass_shorted",
        .explanation = "a bypass diode is shorted and bypasses its cells",
        .index = Index::bypass,
@@ -87,7 +87,7 @@ std::vector<LightEffectKind> array_effect_kinds() {
        .in_scans = false,
        .in_circuit = true,
        .act = [](LightState& state, size_t, Numbers x) { state.series_ohm += x[0]; }},
-      // A resistance across every cell, beside the shunt that it has.
+      // A resistance across every cell, parallel to its shunt.
       {.name = "shunt",
        .explanation = "leakage across every cell beside the stated shunt",
        .parameters = {{.key = "resistance_ohm",
@@ -99,8 +99,8 @@ std::vector<LightEffectKind> array_effect_kinds() {
        .in_scans = false,
        .in_circuit = true,
        .act = [](LightState& state, size_t, Numbers x) { state.shunt_S += x[0]; }},
-      // photocurrent_per_K is added to photocurrent_slope_per_K, voltage_V_per_K to the voltage of
-      // every cell per kelvin above its reference temperature.
+      // photocurrent_per_K is added to photocurrent_slope_per_K. voltage_V_per_K times the
+      // temperature above reference is added to the voltage of every cell.
       {.name = "temperature_coefficient",
        .explanation = "the temperature coefficients of the cells differ from those stated",
        .parameters =
@@ -122,8 +122,8 @@ std::vector<LightEffectKind> array_effect_kinds() {
              state.photocurrent_per_K += x[0];
              state.voltage_V_per_K += x[1];
            }},
-      // Between two instants of one recording (counted from 0). The maximum that the tracker holds
-      // follows from every reading, because maxima move and vanish when the platform rotates.
+      // Between two instants of one recording (counted from 0). The local maximum of the tracker is
+      // recomputed at every reading, because maxima move and vanish when the platform rotates.
       {.name = "tracker_trapped",
        .explanation = "the tracker holds a local maximum of the power",
        .parameters = {{.key = "interval_s",

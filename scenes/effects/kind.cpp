@@ -12,7 +12,7 @@
 namespace photorque {
 namespace {
 
-// Loss of light at 45° by Fresnel's law, in addition to that at normal incidence.
+// Loss of light at 45° by Fresnel's law, in addition to the loss at normal incidence.
 double slant_loss(double index) {
   CellFront front;
   front.index = index;
@@ -49,7 +49,7 @@ double slope_of(const EffectParameter& parameter, double x) {
     case EffectParameter::Form::reciprocal:
       return -1.0 / (x * x);
     case EffectParameter::Form::slant: {
-      // Infinite at both ends: over a step.
+      // The derivative is infinite at both ends: use a finite difference.
       constexpr double step = 0.02;
       const double low = std::clamp(x - step, 0.0, 1.0 - 2.0 * step), high = low + 2.0 * step;
       return (index_of(high) - index_of(low)) / (high - low);

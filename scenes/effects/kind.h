@@ -1,7 +1,7 @@
-// One kind of effect on light and power: stated by an experiment, or found by a diagnosis.
+// One kind of effect on light and power, stated by an experiment or found by a diagnosis.
 //
-// A kind states its parameters as differences from what leaves everything as it is, and writes them
-// into a LightState. Adding one is one entry in the table of its family.
+// A kind states its parameters as deviations from the values without effect, and writes them into a
+// LightState. To add a kind, add one entry to the table of its family.
 #pragma once
 
 #include <functional>
@@ -14,17 +14,19 @@
 
 namespace photorque {
 
-// A number, or several of one key. What is fitted is x, which is 0 where nothing acts.
+// One parameter of an effect: a number, or several numbers of one key. The fitted variable is x;
+// x = 0 means no effect.
 struct EffectParameter {
   // Value of the key from x, in SI.
   enum class Form {
     offset,      // neutral + x
     reciprocal,  // 1/x
-    slant,       // the refractive index of a glass that takes x of what one of index 2 takes of
-                 // light at 45°; beyond 2 glass takes less again
-    tangent,     // atan x, of an angle
+    // Refractive index of a glass with the loss x at 45° relative to a glass of index 2. (Glass
+    // above index 2 loses less again.)
+    slant,
+    tangent,  // atan x, of an angle
   };
-  std::string key;           // as diagnosis.json and experiments name it, with its unit
+  std::string key;           // name in diagnosis.json and in experiments, with its unit
   std::string meaning = {};  // a phrase for the tables of keys
   size_t count = 1;
   double neutral = 0.0;
@@ -32,47 +34,48 @@ struct EffectParameter {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
   Form form = Form::offset;
-  // False: no strength. It means nothing without the others and is looked for over `starts`.
+  // False: the parameter has no effect unless another one is nonzero. It is then searched from
+  // `starts`.
   bool is_strength = true;
   std::vector<double> starts = {};
-  bool is_fitted = true;  // false: the value of a scan of the recording is kept
-  double step = 0.0;      // of the differences that give derivatives; 0: a fiftieth of the scale
+  bool is_fitted = true;  // false: the value of the scan of the recording is kept
+  double step = 0.0;      // step of numerical derivatives; 0: a fiftieth of the scale
 };
 
 struct LightEffectKind {
   std::string name;
   std::string explanation;  // a sentence of physics without a full stop
-  // `frame`: 0 fixed in the lab, 1 fixed on the body.
+  // Object to which `index` refers. `frame`: 0 fixed in the lab, 1 fixed on the body.
   enum class Index { none, lamp, cell, string, bypass, wall, frame };
   Index index = Index::none;
   std::vector<EffectParameter> parameters;
-  // Which recordings can show it.
+  // Types of recordings that show the effect.
   bool in_scans = true, in_sweeps = true, in_runs = true;
-  // Whether it acts on the array's circuit, and not on light or photocurrents alone.
+  // Whether it acts on the array's circuit, not only on light or photocurrents.
   bool in_circuit = false;
   // Whether a trace of the experiment shows it.
   bool is_traced = false;
-  // Initial values of nonlinear parameters from the recordings.
+  // Method for initial values of nonlinear parameters from the recordings.
   enum class Scan { none, shadow, trapped, wave };
   Scan scan = Scan::none;
-  // Writes x into the state; `x` holds all parameters' numbers in order.
+  // Writes x into the state; `x` contains the numbers of all parameters in order.
   std::function<void(LightState& state, size_t index, std::span<const double> x)> act;
 };
 
-// The value of a key from x, in SI, and dvalue/dx.
+// Value of a key from x, in SI units, and its derivative with respect to x.
 double value_of(const EffectParameter& parameter, double x);
 double slope_of(const EffectParameter& parameter, double x);
-// And back.
+// Inverse of value_of().
 double x_of(const EffectParameter& parameter, double value);
 
-// Which values the key can have, in its own unit: "from 0 to 1"; empty where any number will do.
+// Range of the key in its own unit, such as "from 0 to 1"; empty if any number is allowed.
 std::string range_of(const EffectParameter& parameter);
 
-// The families, each a table in the file of its name.
+// The families; each is a table in the file of the same name.
 std::vector<LightEffectKind> lamp_effect_kinds();
 std::vector<LightEffectKind> surroundings_effect_kinds();
 std::vector<LightEffectKind> array_effect_kinds();
-// All of them, in that order.
+// All kinds, in the order of the families.
 std::vector<LightEffectKind> all_light_effect_kinds();
 
 }  // namespace photorque

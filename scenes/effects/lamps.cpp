@@ -1,4 +1,4 @@
-// Effects on lamps: how much light they emit, where they stand and where they point.
+// Effects on lamps: emitted power, position and direction.
 #include "scenes/effects/kind.h"
 
 namespace photorque {
@@ -20,7 +20,8 @@ std::vector<LightEffectKind> lamp_effect_kinds() {
        .is_traced = true,
        .act = [](LightState& state, size_t index,
                  Numbers x) { state.lamp_power[index] *= 1.0 + x[0]; }},
-      // The axis d becomes d + tan a₁ e₁ + tan a₂ e₂, e being lab x and y made perpendicular to d.
+      // The axis d becomes d + tan a₁ e₁ + tan a₂ e₂; e₁ and e₂ are lab x and y, made perpendicular
+      // to d.
       {.name = "led_aim",
        .explanation = "the beam of an LED is rotated from its stated direction",
        .index = Index::lamp,
@@ -34,7 +35,7 @@ std::vector<LightEffectKind> lamp_effect_kinds() {
        .is_traced = true,
        .act = [](LightState& state, size_t index,
                  Numbers x) { state.lamp_aim[index] += Vec2(x[0], x[1]); }},
-      // The angular width of all beams times `scale`, with the same power.
+      // Multiplies the angular width of all beams by `scale`; the power is unchanged.
       {.name = "beam_divergence",
        .explanation = "all beams are wider or narrower than stated",
        .parameters = {{.key = "scale",
@@ -45,7 +46,7 @@ std::vector<LightEffectKind> lamp_effect_kinds() {
                        .highest = 2.0}},
        .is_traced = true,
        .act = [](LightState& state, size_t, Numbers x) { state.divergence *= 1.0 + x[0]; }},
-      // All lamps displaced by offset_m, lab axes, with their axes kept.
+      // Displaces all lamps by offset_m, lab axes; their directions are unchanged.
       {.name = "source_shift",
        .explanation = "the lamps are displaced from their stated positions",
        .parameters = {{.key = "offset_m",
@@ -67,7 +68,8 @@ std::vector<LightEffectKind> lamp_effect_kinds() {
                        .highest = 4.0}},
        .is_traced = true,
        .act = [](LightState& state, size_t, Numbers x) { state.power *= 1.0 + x[0]; }},
-      // Power × 1 − depth (1 − e^(−t/τ)), t since the lamps were switched on (t_s = 0).
+      // Multiplies the power by 1 − depth (1 − e^(−t/τ)); t is the time since the lamps were
+      // switched on (t_s = 0).
       {.name = "led_droop",
        .explanation = "the lamps lose power while they warm up",
        .parameters = {{.key = "depth",

@@ -76,7 +76,7 @@ bool is_sheet(const std::vector<std::array<Vec3, 3>>& triangles) {
     for (const Vec3& p : t) {
       if (std::abs(normal.dot(p - first)) > flat * size_m) return false;
     }
-    // The middle of one within another.
+    // Test whether the centre of a triangle is inside another one.
     const Vec3 middle = (t[0] + t[1] + t[2]) / 3.0;
     const auto holds_middle = [&](const std::array<Vec3, 3>& other) {
       if (&other == &t) return false;

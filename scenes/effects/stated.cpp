@@ -210,7 +210,7 @@ LightState stated_effects(const Experiment& experiment, const LightParts& parts)
       }
     }
     meant->act(state, index_of(effect, *meant, parts), x);
-    // Further results of a diagnosis; reading them has no effect on a run.
+    // Additional results of a diagnosis; they have no effect on a run but must count as read.
     for (const char* key : {"u_m", "v_m", "darkest"}) {
       if (effect.has(key)) effect.raw(key);
     }

@@ -13,14 +13,14 @@
 
 namespace photorque {
 
-// The light state with all effects of the experiment. InputError for unknown kinds, keys and
+// The light state with all effects of the experiment. Throws InputError for unknown kinds, keys and
 // indices.
 LightState stated_effects(const Experiment& experiment, const LightParts& parts);
 
 // Applies the effects of the experiment to its beams and its attitude, for a trace: power and aim
 // of single LEDs; power, beam width and position of all LEDs; attitude bias. Returns one line for
-// each effect that a trace does not include, because it acts on instruments or on the circuit of
-// the array, or is not traced. InputError as light_parts() and stated_effects().
+// each effect that a trace does not include: it acts on instruments or on the circuit of the array,
+// or it is not supported in traces. Throws InputError like light_parts() and stated_effects().
 std::vector<std::string> apply_stated_effects(Experiment& experiment);
 
 // The experiment's beams with their angular widths multiplied by `scale` > 0.

@@ -1,4 +1,4 @@
-// Effects between the lamps and the cells: other light, shadows, walls, attitude, and the
+// Effects between the lamps and the cells: additional light, shadows, walls, attitude, and the
 // photodiode.
 #include "scenes/effects/kind.h"
 
@@ -17,8 +17,8 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
                        .lowest = 0.0,
                        .highest = 1e5}},
        .act = [](LightState& state, size_t, Numbers x) { state.ambient_W_m2 += x[0]; }},
-      // A thin box, fixed in the lab or on the body; its thickness does not show. opacity 1:
-      // opaque.
+      // A thin box, fixed in the lab or on the body; its thickness has no visible effect. opacity 1
+      // is opaque.
       {.name = "unmodelled_shadow",
        .explanation = "an opaque object outside the model hides lamps from part of the receiver",
        .index = Index::frame,
@@ -84,7 +84,7 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
            [](LightState& state, size_t index, Numbers x) {
              state.walls.push_back({index, 0.0, x[0]});
            }},
-      // The readings of a scan times `factor`.
+      // Multiplies the readings of a scan by `factor`.
       {.name = "detector_gain",
        .explanation = "the photodiode reads too much or too little by one factor",
        .parameters = {{.key = "factor",

@@ -11,12 +11,12 @@
 namespace photorque {
 namespace {
 
-constexpr size_t comment_bytes = 100;  // of one line
-// Deeper tables stand inline: parse_toml() takes keys of at most 16 parts.
+constexpr size_t comment_bytes = 100;  // maximum length of one line
+// Deeper tables are written inline: parse_toml() accepts keys of at most 16 parts.
 constexpr size_t deepest_section = 4;
 
-// The text with U+FFFD for bytes that are not UTF-8. `escape` gives what stands for a control
-// character.
+// Copies the text character by character with `escape` applied. Bytes that are not UTF-8 become
+// U+FFFD.
 template <class Escape>
 std::string for_each_character(std::string_view text, const Escape& escape) {
   std::string all;
@@ -61,7 +61,7 @@ std::string real_text(double value) {
   return text.find_first_of(".eE") == std::string::npos ? text + ".0" : text;
 }
 
-// The lines that a value was read from; nothing of values that were not read.
+// Range of lines from which a value was read; empty for values that were not read from a text.
 struct LineRange {
   int first = std::numeric_limits<int>::max();
   int last = 0;
@@ -78,15 +78,15 @@ struct LineRange {
   }
 };
 
-// A table is read and written on one line, or in a section.
+// A table that was read from one line is written on one line, otherwise as a section.
 bool is_inline(const SettingsNode& node) {
   LineRange lines;
   lines.add(node);
   return lines.first >= lines.last;
 }
 
-// The entries of a table in the order of their lines; those without a line last, by name. Of a line
-// `value` comes first: { value = 1, sigma = 0.1 }.
+// Entries of a table in the order of their lines; entries without a line come last, by name. On one
+// line `value` comes first: { value = 1, sigma = 0.1 }.
 std::vector<const SettingsNode::Table::value_type*> in_order(const SettingsNode::Table& table) {
   std::vector<const SettingsNode::Table::value_type*> entries;
   for (const auto& entry : table) entries.push_back(&entry);
@@ -122,7 +122,7 @@ const SettingsNode::Array* tables_of(const SettingsNode& node) {
   return all_tables ? items : nullptr;
 }
 
-// A line of the document, and the line that its value was read from; 0: none.
+// A line of the document, and the line from which its value was read (0: none).
 struct Line {
   int from = 0;
   std::string text;
@@ -133,7 +133,8 @@ class Writer {
  public:
   std::vector<Line> lines;
 
-  // The values of a table, then its sections. `path` names the table in headers; empty: the root.
+  // Writes the values of a table, then its sections. `path` is the table's name in headers; empty
+  // for the root.
   void write(const SettingsNode::Table& table, const std::string& path, size_t depth) {
     std::vector<const SettingsNode::Table::value_type*> sections;
     for (const auto* entry : in_order(table)) {
@@ -166,7 +167,7 @@ class Writer {
     return items == nullptr ? !is_inline(node) : !std::ranges::all_of(*items, is_inline);
   }
 
-  // A table that holds nothing but sections has no header.
+  // A table that contains only sections gets no header.
   void write_section(const SettingsNode& node, const std::string& name, size_t depth) {
     const auto& table = std::get<SettingsNode::Table>(node.value);
     const bool has_values = table.empty() || std::ranges::any_of(table, [&](const auto& entry) {
@@ -315,8 +316,8 @@ std::string TomlDocument::text() const {
   writer.write(std::get<SettingsNode::Table>(root.value), "", 0);
   std::vector<std::vector<std::string>> above(writer.lines.size() + 1);
   std::vector<std::string> beside(writer.lines.size());
-  // The written line of a value that was read from `line` or, for a comment that stands above a
-  // value, of the first value that was read from a later line.
+  // Finds the written line that belongs to a comment. For a comment beside a value it is the line
+  // of this value; for a comment above a value, the line of the next value that was read.
   const auto owner = [&](const Comment& comment) {
     size_t best = writer.lines.size();
     for (size_t i = 0; i < writer.lines.size(); ++i) {

@@ -61,7 +61,8 @@ void add_lamps_inside(const Scene& scene, std::span<const Beam> beams,
 }
 
 void add_unresolved_parts(const Scene& scene, std::vector<std::string>& lines) {
-  // Rays start so far above the surface that they leave (TraceableScene), as a part of the scene.
+  // A ray starts at this offset above its surface, as a fraction of the scene's size (see
+  // TraceableScene).
   constexpr double offset_of_size = 5e-7, offsets = 20.0;
   Eigen::AlignedBox3d all;
   std::vector<double> size_m;

@@ -1,4 +1,4 @@
-// The second step of reading an experiment: the scene, beams and receivers that the text names.
+// Second step of reading an experiment: the scene, beams and receivers to which the text refers.
 #include "scenes/experiment/experiment.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ std::vector<std::string> names_of(const std::vector<Kind>& kinds) {
 }
 
 void require_spectrum_inside(const Settings& source, const Beam& beam, const Bands& bands) {
-  // A Gaussian is cut at five standard deviations without complaint.
+  // Small enough for a Gaussian that is cut at five standard deviations.
   constexpr double negligible = 1e-6;
   const BandValues fractions = band_fractions(beam.spectrum, bands);
   double inside = 0.0;
@@ -39,7 +39,7 @@ void require_spectrum_inside(const Settings& source, const Beam& beam, const Ban
   throw source.error("", outside.str(), "[scene] bands_nm that hold all of it");
 }
 
-// Sources that are farther or wider leave the range that single precision can trace in.
+// Rejects sources that are too far away or too wide for tracing in single precision.
 void require_traceable(const Settings& source, const Beam& beam) {
   const double away_m = beam.lab_from_emitter.translation_m.stableNorm();
   if (!(away_m <= largest_distance_m)) {
@@ -63,10 +63,12 @@ void require_traceable(const Settings& source, const Beam& beam) {
   }
 }
 
-// A sun sends its rays over a disc about the body's origin that holds the scene at any attitude.
+// A sun sends its rays over a disc about the body's origin that covers the scene at any attitude.
+// Rejects scenes that are much smaller than this disc.
 void require_sunlight_to_land(const ExperimentFile& file, const Scene& scene,
                               const std::vector<Beam>& beams) {
-  constexpr double most = 100.0;  // one ray of 10,000 lands, and errors are still correct
+  // At this limit one ray in 10,000 meets the scene, and error estimates are still correct.
+  constexpr double most = 100.0;
   if (std::ranges::none_of(beams, [](const Beam& beam) {
         return beam.aperture && std::isinf(beam.aperture->radius_m);
       })) {
@@ -83,7 +85,7 @@ void require_sunlight_to_land(const ExperimentFile& file, const Scene& scene,
                    "a centre of rotation within 100 times its size");
 }
 
-// Notices and the files that the sources read go to the model's.
+// Makes the beams. Notices and input files of the sources are added to those of the model.
 std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
   const Scene& scene = model.scene;
   if (file.sources.empty() && file.further_beams.empty())
@@ -148,7 +150,8 @@ NamedReceiver make_receiver(const Settings& settings, const Scene& scene,
 std::vector<NamedReceiver> make_receivers(const ExperimentFile& file, const Scene& scene) {
   const std::vector<ReceiverKind> kinds = all_receiver_kinds();
   std::vector<NamedReceiver> receivers;
-  std::set<std::pair<std::string, std::string>> taken;  // their files would overwrite each other
+  // Receivers of equal kind and name would overwrite each other's files.
+  std::set<std::pair<std::string, std::string>> taken;
   for (const Settings& settings : file.receivers) {
     receivers.push_back(make_receiver(settings, scene, kinds));
     const NamedReceiver& added = receivers.back();
@@ -177,7 +180,7 @@ Camera read_camera(const ExperimentFile& file, double scene_radius_m) {
   return camera;
 }
 
-// The file's name as the user wrote it, where the user wrote it.
+// The message contains the file name as the user wrote it, at its position in the experiment.
 void require_scene_file(const ExperimentFile& file) {
   if (!file.scene_file) {
     throw file.settings.error(scene_key::scene, "nothing", "a table [scene] with a file");
@@ -188,7 +191,7 @@ void require_scene_file(const ExperimentFile& file) {
   require_plain_file(existing_file(scene, scene_key::file, file.path.parent_path()));
 }
 
-// The bytes of files whose names are relative to a file's folder.
+// Returns a function that reads files with names relative to the folder of `path`.
 std::function<std::optional<std::string>(const std::string&)> files_beside(
     const std::filesystem::path& path) {
   constexpr uint64_t largest_bytes = 1ull << 28;

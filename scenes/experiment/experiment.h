@@ -1,7 +1,7 @@
 // One experiment file: the nominal model of the laboratory, ready to trace.
 //
-// The file is read in two steps. ExperimentFile is what the text says, checked as far as it can be
-// without the scene; Experiment is the scene, beams and receivers that it names.
+// The file is read in two steps. ExperimentFile contains the text, checked as far as possible
+// without the scene. Experiment contains the scene, beams and receivers to which the text refers.
 #pragma once
 
 #include <filesystem>
@@ -23,40 +23,40 @@
 
 namespace photorque {
 
-// [attitude]: attitude of the platform, see lab_from_body_at().
+// [attitude]: attitude of the platform; see lab_from_body_at().
 struct Attitude {
   double tilt_rad = 0.0;     // in [0, π]
-  double heading_rad = 0.0;  // of the direction it leans to, from lab x (east) towards y
+  double heading_rad = 0.0;  // azimuth of the tilt direction, from lab x (east) towards y
 };
 
-// [torque_map]: the attitudes of a wrench table, every tilt with every heading.
+// [torque_map]: attitudes of a wrench table, every tilt with every heading.
 struct AttitudeGrid {
   std::vector<double> tilt_rad;     // ascending, at least one
   std::vector<double> heading_rad;  // ascending, at least one
 };
 
-// [torque_map] with elevations and azimuths: directions towards the Sun in body axes, every
-// elevation with every azimuth, for the table of a body in sunlight.
+// [torque_map] with elevations and azimuths: directions to the Sun in body axes, every elevation
+// with every azimuth, for the wrench table of a body in sunlight.
 struct DirectionGrid {
   std::vector<double> elevation_rad;  // ascending in [−π/2, π/2], at least one
   std::vector<double> azimuth_rad;    // ascending in [−π, π], from x towards y, at least one
 };
 
-// [trace]: how much work the light on surfaces is worth.
+// [trace]: effort for the light on surfaces.
 struct TraceEffort {
-  // Direct light, where it can be gathered from the surface's side: so always, never, or unless
-  // that would take much longer than the rays.
+  // Whether direct light is gathered over the surface instead of traced, if that is possible.
+  // automatic: unless gathering would take much longer than the rays.
   enum class Direct { automatic, gather, rays };
   Direct direct = Direct::automatic;
-  // More rays until every bin above a tenth of its map's peak has this relative standard error,
+  // Adds rays until every bin above a tenth of its map's maximum has this relative standard error,
   std::optional<double> target_error;
   std::optional<double> max_time_s;  // or until the next round would end later than this
-  // Number of emitted rays; those that arrive on each flux map are written to a file. Empty: no
-  // file.
+  // Number of rays in a separate trace whose arriving rays are written to a file per flux map.
+  // Empty: no file.
   std::optional<uint64_t> arriving_rays;
 };
 
-// [camera]: where a picture is taken from. Lab frame, z up in the picture.
+// [camera]: viewpoint of a picture. Lab frame; z is up in the picture.
 struct Camera {
   Vec3 position_m = Vec3::Zero();
   Vec3 target_m = Vec3::Zero();
@@ -64,32 +64,34 @@ struct Camera {
   int width = 1280;                // pixels
   int height = 960;
   bool lamps = true;    // lamps and some of their rays are drawn
-  bool placed = false;  // the experiment states its place
+  bool placed = false;  // the experiment states its position
 };
 
-// The camera that shows a whole scene of `radius_m` about the lab origin: from the south-east and
-// above, the sphere just inside the picture.
+// Camera that shows a whole scene of `radius_m` about the lab origin, from the south-east and
+// above. The sphere of this radius just fits into the picture.
 Camera camera_framing(double radius_m);
 
 // The content of an experiment file.
 struct ExperimentFile {
   std::filesystem::path path;
-  // The whole file, overrides included.
+  // The whole file with overrides.
   Settings settings{SettingsNode{}};
-  std::vector<std::pair<std::string, std::string>> inputs;  // for Provenance: this file, overrides
+  // For Provenance: this file and the overrides.
+  std::vector<std::pair<std::string, std::string>> inputs;
 
   // Model of an optical run; empty if the file has no [scene].
   std::optional<std::filesystem::path> scene_file;
-  double metres_per_unit = 1.0;       // [scene] metres_per_unit: of lengths in the scene's file
-  std::optional<CadConventions> cad;  // [scene] unit and up, where the file is no glTF
-  // [scene] centre_of_rotation_m: where the model has it, body axes
+  double metres_per_unit = 1.0;       // [scene] metres_per_unit: of lengths in the model's file
+  std::optional<CadConventions> cad;  // [scene] unit and up, if the file is not glTF
+  // [scene] centre_of_rotation_m: its position in the model, body axes
   Vec3 centre_of_rotation_m = Vec3::Zero();
-  bool textures = false;          // [scene] textures: base colours from the model's pictures
-  bool may_leave_folder = false;  // [scene] allow_outside: of models that name files elsewhere
+  bool textures = false;  // [scene] textures: take base colours from the model's pictures
+  // [scene] allow_outside: the model may refer to files outside its folder
+  bool may_leave_folder = false;
   Bands bands;
   std::vector<Settings> materials;  // [[material]], overrides by name
   std::vector<Settings> sources;
-  std::vector<Beam> further_beams = {};  // lamps that no text describes, lab frame
+  std::vector<Beam> further_beams = {};  // lamps that the text does not contain, lab frame
   std::vector<Settings> receivers;
   std::vector<Settings> joint_tables;  // [[joint]]
   std::vector<Joint> joints;
@@ -102,24 +104,24 @@ struct ExperimentFile {
   std::optional<uint64_t> torque_map_rays;        // per attitude or direction; else trace.rays
   std::optional<Settings> camera;
 
-  // A table that this reader leaves to others ([array], [platform], [environment], [[disturbance]],
-  // [sensors], [recording]), each item with its own record of the keys read: the reader of one
-  // calls finish() on it. Empty when the file has none.
+  // Tables that other parts of the program read ([array], [platform], [environment],
+  // [[disturbance]], [sensors], [recording]). Each item records the keys that are read; its reader
+  // must call finish() on it. Empty if the file has none.
   std::vector<Settings> others(const std::string& key) const;
 };
 
-// Reads the text and the overrides ("KEY=VALUE", see apply_override()). Throws InputError for
-// everything that is wrong without knowing the scene, except keys inside the tables that sources,
-// receivers and materials will read.
+// Reads the text and the overrides ("KEY=VALUE", see apply_override()). Throws InputError for all
+// errors that can be found without the scene, except in the tables of sources, receivers and
+// materials, which are read later.
 ExperimentFile read_experiment_file(const std::filesystem::path& path,
                                     std::span<const std::string> overrides = {});
 
-// Reads a text that need not be a file's: `path` is what messages call it, and the files that it
-// names are relative to the folder of that path.
+// Reads a text. Messages call it `path`; files that it names are relative to the folder of that
+// path.
 ExperimentFile read_experiment_text(const std::filesystem::path& path, const std::string& text,
                                     std::span<const std::string> overrides = {});
 
-// A receiver and its name in the experiment.
+// A receiver with its kind and its name in the experiment.
 struct NamedReceiver : MadeReceiver {
   std::string name;  // the key `name`, else the node, else the kind
   std::string kind;
@@ -133,20 +135,21 @@ struct Experiment {
   std::vector<NamedReceiver> receivers;
   RigidTransform lab_from_body;  // from [attitude]
   Camera camera;
-  std::vector<std::string> notices;  // assumptions of the scene's reader, one line each
-  // Doubts about results, one line each: see geometry_warnings().
+  std::vector<std::string> notices;  // assumptions of the reader of the model, one line each
+  // Reasons to doubt the results, one line each: see geometry_warnings().
   std::vector<std::string> warnings = {};
   std::vector<std::pair<std::string, std::string>> inputs;  // experiment, overrides, scene files
 
+  // The receivers for trace(), in their order.
   std::vector<const Receiver*> receiver_pointers() const;
 };
 
-// Loads the parts that the file names. Throws InputError for: no [scene], a scene without
-// triangles, no source, a source whose spectrum leaves the bands, a receiver on a node that does
-// not exist, and every key that was not read; for textures without a `picture` reader too.
+// Loads the parts to which the file refers. Throws InputError for: no [scene], a scene without
+// triangles, no source, a source whose spectrum exceeds the bands, a receiver on a missing node,
+// any key that was not read, and textures without a `picture` reader.
 Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture = {});
 
-// read_experiment_file() and resolve_experiment().
+// Calls read_experiment_file() and resolve_experiment().
 Experiment read_experiment(const std::filesystem::path& path,
                            std::span<const std::string> overrides = {},
                            const PictureReader& picture = {});

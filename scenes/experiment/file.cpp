@@ -1,4 +1,4 @@
-// The first step of reading an experiment: the text, without the scene.
+// First step of reading an experiment: the text, without the scene.
 #include <cmath>
 
 #include "core/constants.h"
@@ -13,7 +13,7 @@
 namespace photorque {
 namespace {
 
-// Tables that optical runs accept as they are; the programs that use them check them.
+// Tables that this reader ignores; the programs that use them check them.
 constexpr const char* tables_of_others[] = {
     "array",     "sweep",     "platform",     "environment",  "disturbance", "sensors",
     "recording", "published", "propagate",    "budget",       "balance",     "light",
@@ -109,7 +109,7 @@ AttitudeGrid read_torque_map(const Settings& root, const Attitude& attitude) {
   return grid;
 }
 
-// An axis of directions: its array in degrees, or −half … half in even steps.
+// An axis of directions: its array in degrees, or equal steps from −half to half.
 std::vector<double> read_direction_axis(const Settings& table, const NumbersKey& array,
                                         const NumberKey& step) {
   const double half_rad = array.range.high;
@@ -162,7 +162,7 @@ std::optional<DirectionGrid> read_light_directions(const Settings& root) {
                        read_direction_axis(table, azimuth, azimuth_step)};
 }
 
-// A mistyped name is reported before keys of another kind of file.
+// Reports a misspelt file name before unknown keys for this type of file.
 void require_model(const Settings& scene, const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
@@ -176,7 +176,7 @@ void require_model(const Settings& scene, const std::filesystem::path& file) {
                     "a model that ends in .gltf, .glb, .stl or .obj");
 }
 
-// Unit and axis of an STL or OBJ file; a glTF file states both itself.
+// Unit and axis of an STL or OBJ file; empty for glTF, which defines both.
 std::optional<CadConventions> read_cad_conventions(const Settings& scene,
                                                    const std::filesystem::path& file) {
   if (!cad_format(file)) {

@@ -165,7 +165,7 @@ void turn_joints(Scene& scene, const std::vector<Joint>& joints,
           throw tables[j].error(tables[j].has(joint_key::node) ? "node" : "nodes",
                                 "\"" + node + "\"", "parts that no joint turns yet");
         }
-        // A joint at rest leaves every bit as it is.
+        // Skipped, so that a joint at angle 0 changes no bit of the scene.
         if (joint.angle_rad == 0.0) continue;
         Instance& instance = scene.instances[part];
         instance.body_from_mesh = turn * instance.body_from_mesh;

@@ -1,4 +1,4 @@
-// The keys that file.cpp and experiment.cpp read.
+// Keys that file.cpp and experiment.cpp read.
 #include "scenes/experiment/keys.h"
 
 #include "receivers/kind.h"

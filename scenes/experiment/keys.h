@@ -1,5 +1,4 @@
-// The tables of an experiment that this room reads, and what sources, receivers and materials read
-// of them.
+// Keys of an experiment that this folder reads, and the tables of sources, receivers and materials.
 #pragma once
 
 #include <vector>

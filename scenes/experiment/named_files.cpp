@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t longest_path = 4096;
 
-// All texts of a JSON document.
+// Collects all texts of a JSON document.
 void collect_texts(const nlohmann::json& node, std::vector<std::string>& texts) {
   if (node.is_string()) {
     texts.push_back(node.get<std::string>());
@@ -22,11 +22,12 @@ void collect_texts(const nlohmann::json& node, std::vector<std::string>& texts) 
   }
 }
 
-// The JSON of a glTF or GLB file; empty for any other.
+// JSON text of a glTF or GLB file; empty for other files.
 std::string json_of(const fs::path& path, const std::string& bytes) {
   constexpr size_t glb_head = 20;  // magic, version, length; length and type of the first chunk
-  if (path.extension() == ".gltf") return bytes;
-  if (path.extension() != ".glb" || bytes.size() < glb_head) return "";
+  const std::string ending = lower_case(path.extension().string());
+  if (ending == ".gltf") return bytes;
+  if (ending != ".glb" || bytes.size() < glb_head) return "";
   return bytes.substr(glb_head, little_endian_32(bytes, 12));
 }
 
@@ -55,7 +56,7 @@ fs::path named_file(const fs::path& folder, const std::string& text) {
 
 std::vector<fs::path> files_named_in(const fs::path& path, const std::string& bytes) {
   const std::string text_of_json = json_of(path, bytes);
-  // The reader of the model reports its faults.
+  // No files for JSON that is nested too deeply; the reader of the model reports the error.
   if (extent_of_json(text_of_json).depth > deepest_json) return {};
   const auto json = nlohmann::json::parse(text_of_json, nullptr, false);
   std::vector<std::string> texts;

@@ -26,7 +26,7 @@ SettingsNode to_settings(const toml::node& node, const std::string& name) {
     SettingsNode::Table items;
     for (const auto& [key, item] : *table) {
       SettingsNode& entry = items[std::string(key.str())] = to_settings(item, name);
-      // The key, not its value: a table made by a dotted key has no place in the file.
+      // Line of the key: a table created by a dotted key has no separate line.
       entry.where.line = static_cast<int>(key.source().begin.line);
     }
     result.value = std::move(items);
@@ -52,11 +52,11 @@ SettingsNode to_settings(const toml::node& node, const std::string& name) {
   return result;
 }
 
-// Tables within tables are built, walked and freed by recursion. Keys of so many parts, and no more
-// than toml++'s own 256 values within each other, stay far from the end of a stack.
+// Nested tables are built, walked and freed by recursion. With this limit, and toml++'s limit of
+// 256 nested values, the stack does not overflow.
 constexpr size_t max_key_parts = 16;
 
-// The text from a quote to behind its end, or to the end of all.
+// Position after the end of the string that begins at `begin`, or the end of the text.
 size_t end_of_string(std::string_view text, size_t begin) {
   const char quote = text[begin];
   const bool multiline = text.substr(begin, 3) == std::string(3, quote);
@@ -65,7 +65,7 @@ size_t end_of_string(std::string_view text, size_t begin) {
     if (text[i] == '\\' && quote == '"') {
       ++i;
     } else if (text.substr(i, quotes) == std::string(quotes, quote)) {
-      // Up to two more quotes may belong to the end of the text.
+      // Up to two more quotes may belong to the string's content.
       size_t end = i + quotes;
       while (multiline && end < std::min(i + quotes + 2, text.size()) && text[end] == quote) ++end;
       return end;
@@ -76,7 +76,7 @@ size_t end_of_string(std::string_view text, size_t begin) {
   return text.size();
 }
 
-// Throws InputError for keys of too many parts, before anything recurses into them.
+// Throws InputError for keys with too many parts, before recursive functions process them.
 void require_shallow(std::string_view text, const std::string& name) {
   size_t dots = 0;
   int line = 1;
@@ -96,7 +96,7 @@ void require_shallow(std::string_view text, const std::string& name) {
   }
 }
 
-// A step of a key's path: a name, or an index when the name is empty.
+// A step of a key's path: a name, or an index if the name is empty.
 struct Step {
   std::string name;
   size_t index = 0;
@@ -109,7 +109,7 @@ InputError wrong_key(const std::string& assignment) {
           "KEY=VALUE, where KEY is like source[0].power_W"};
 }
 
-// "source[0].power_W" → source, [0], power_W. Empty when it is not a path.
+// "source[0].power_W" → source, [0], power_W. Empty if the text is not a path.
 std::vector<Step> steps_of(std::string_view key) {
   std::vector<Step> steps;
   while (!key.empty()) {
@@ -129,7 +129,7 @@ std::vector<Step> steps_of(std::string_view key) {
     if (!key.starts_with('.') || key.size() == 1) return {};
     key.remove_prefix(1);
   }
-  if (steps.size() > 2 * max_key_parts) {  // each may have an index
+  if (steps.size() > 2 * max_key_parts) {  // each part may have an index
     throw InputError(command_line, "", "a key of more than 16 parts", "at most 16");
   }
   return steps;
@@ -168,7 +168,7 @@ void locate_on_command_line(SettingsNode& node) {
   }
 }
 
-// The item that one step leads to, made if it is a new key of a table.
+// The item to which one step leads; creates a new key of a table.
 SettingsNode& follow(SettingsNode& node, const Step& step, const std::string& key) {
   if (!step.name.empty()) {
     auto* table = std::get_if<SettingsNode::Table>(&node.value);
@@ -202,7 +202,7 @@ void erase_other_units(SettingsNode::Table& table, const std::string& key) {
   });
 }
 
-// Line `number` of a text, from one, without blanks around it and without a comment.
+// Line `number` (counted from one) of a text, without surrounding blanks and comment.
 std::string bare_line(const std::string& text, int number) {
   std::istringstream lines(text);
   std::string line;
@@ -211,7 +211,7 @@ std::string bare_line(const std::string& text, int number) {
   return std::string(trimmed(std::string_view(line).substr(0, line.find('#'))));
 }
 
-// The expected text for a line that TOML cannot read: the usual slips by name.
+// The expected text for a line that is not valid TOML, with hints for common mistakes.
 std::string expected_line(const std::string& line) {
   const size_t equals = line.find('=');
   if (equals == std::string::npos) return "TOML";
@@ -262,8 +262,8 @@ SettingsNode parse_toml(const std::string& text, const std::string& name) {
 
 std::vector<TomlComment> toml_comments(const std::string& text) {
   std::vector<TomlComment> comments;
-  int line = 1, depth = 0;  // of brackets that are open
-  bool has_value = false;   // on this line, so far
+  int line = 1, depth = 0;  // depth of open brackets
+  bool has_value = false;   // on this line so far
   for (size_t i = 0; i < text.size();) {
     const char c = text[i];
     size_t end = i + 1;

@@ -15,7 +15,7 @@ std::optional<double> plain_number(const SettingsNode& node) {
   return std::nullopt;
 }
 
-// A number or an array of numbers; empty for anything else.
+// A number or an array of numbers; empty for other values.
 std::vector<double> plain_numbers(const SettingsNode& node) {
   if (const auto one = plain_number(node)) return {*one};
   std::vector<double> all;
@@ -29,8 +29,8 @@ std::vector<double> plain_numbers(const SettingsNode& node) {
   return all;
 }
 
-// No other table of lamps, arrays or attitudes has such keys: one of them alone is half of a pair,
-// or its other key is misspelt.
+// Whether a table is { value = …, sigma = … }. No other table of lamps, arrays or attitudes has
+// these keys, so a table with only one of them, or with another key, is an error.
 bool is_value_with_sigma(const SettingsNode::Table& table, const std::string& path) {
   const bool has_value = table.contains("value"), has_sigma = table.contains("sigma");
   if (!has_value && !has_sigma) return false;

@@ -1,7 +1,4 @@
-// Numbers of an experiment that are known to within an error: { value = …, sigma = … }.
-//
-// Any number of lamps, array and attitude may have this form. A run uses the value. A diagnosis of
-// light also uses the error as a Gaussian prior.
+// Numbers of an experiment with a known uncertainty: { value = …, sigma = … }.
 #pragma once
 
 #include <filesystem>
@@ -13,19 +10,20 @@
 
 namespace photorque {
 
+// A key whose number is uncertain.
 struct UncertainKey {
-  std::string path;                  // as apply_override() reads it: "source[0].power_W"
+  std::string path;                  // in the syntax of apply_override(): "source[0].power_W"
   std::vector<double> value, sigma;  // in the unit of the key
-  bool is_array = false;             // those of an array, else one number
+  bool is_array = false;             // true: an array; false: one number
 };
 
-// Those of an experiment's text with its overrides.
+// Uncertain keys of an experiment's text with its overrides.
 std::vector<UncertainKey> uncertain_keys(const std::filesystem::path& path, const std::string& text,
                                          std::span<const std::string> overrides);
 
-// Puts the value in the place of every such pair in [[source]], [array] and [attitude], and returns
-// what was there, in the order of the keys' names. InputError for a sigma that is negative, or
-// of another size than its value.
+// Replaces every such pair in [[source]], [array] and [attitude] by its value, and returns the
+// pairs in the order of the keys' names. Throws InputError for a negative sigma, or one of another
+// size than its value.
 std::vector<UncertainKey> take_uncertainty(SettingsNode& root);
 
 }  // namespace photorque

@@ -15,8 +15,8 @@
 namespace photorque {
 namespace {
 
-constexpr double tolerance = 1e-6, step = 2e-6;  // of the scene's size
-constexpr double slight = 5e-4;                  // angle between faces that meet [rad]
+constexpr double tolerance = 1e-6, step = 2e-6;  // fractions of the scene's size
+constexpr double slight = 5e-4;  // maximum angle between faces that touch or cross [rad]
 
 struct Face {
   uint32_t instance, triangle;
@@ -29,7 +29,7 @@ struct PlacedFace {
   Vec3 normal, low_m, high_m;
 };
 
-// Faces in one plane have a key in common.
+// A face with one of its search keys. Faces in the same plane share a key.
 struct KeyedFace {
   uint64_t key;
   Face face;
@@ -37,13 +37,14 @@ struct KeyedFace {
 
 // Relative position of two overlapping faces.
 enum class Relation {
-  coincident,  // within the tolerance, all over the overlap
-  touching,    // within it at one end; `front` is in front of `behind`
-  parted,      // so too, with the fronts towards each other
+  coincident,  // within the tolerance over the whole overlap
+  touching,    // within the tolerance at one end; `front` is in front of `behind`
+  parted,      // within the tolerance at one end; the fronts face each other
   crossing,
 };
 
-// `front` comes before `behind` where both face alike; neither where they face opposite ways.
+// Two faces. If both face alike, `front` comes first; if they face opposite ways, the order has no
+// meaning.
 struct Pair {
   Face front, behind;
   bool opposite;
@@ -69,8 +70,9 @@ std::optional<PlacedFace> placed(const Scene& scene, const Face& face) {
   return result;
 }
 
-// Cells of the plane's normal and distance, without signs. A value near the border of two cells
-// belongs to both; the borders avoid 0 and 1, where most faces are.
+// Adds search keys: cells of the absolute values of the plane's normal and distance. A value near
+// the border of two cells belongs to both. The shift moves the borders away from 0 and 1, where
+// most faces are.
 void add_keys(const PlacedFace& face, const Vec3& centre_m, double size_m,
               std::vector<KeyedFace>& keyed) {
   constexpr double cells = 64.0, shift = 0.37, margin = 1.01 * slight * cells;  // of a cell
@@ -89,7 +91,7 @@ void add_keys(const PlacedFace& face, const Vec3& centre_m, double size_m,
   for (const uint64_t key : keys) keyed.push_back({key, face.face});
 }
 
-// The part of a convex polygon on the side of a plane to which `normal` points.
+// Part of a convex polygon on the side of a plane to which `normal` points.
 std::vector<Vec3> part_before(const std::vector<Vec3>& polygon, const Vec3& normal,
                               const Vec3& point_m) {
   std::vector<Vec3> part;
@@ -104,7 +106,7 @@ std::vector<Vec3> part_before(const std::vector<Vec3>& polygon, const Vec3& norm
   return part;
 }
 
-// Whether two triangles in one plane cover each other by more than `sliver_m` in every direction.
+// Whether two triangles in one plane overlap by more than `sliver_m` in every direction.
 bool overlap(const PlacedFace& a, const PlacedFace& b, double sliver_m) {
   for (const PlacedFace* edges : {&a, &b}) {
     for (size_t k = 0; k < 3; ++k) {
@@ -125,8 +127,9 @@ bool overlap(const PlacedFace& a, const PlacedFace& b, double sliver_m) {
   return true;
 }
 
-// Smallest and largest height of `small` above the plane of `large` within their overlap. The
-// overlap of two triangles in nearly the same plane has at most six corners.
+// Minimum and maximum height of `small` above the plane of `large` within their overlap; empty if
+// they do not overlap. The overlap of two triangles in nearly the same plane has at most six
+// corners.
 std::optional<std::array<double, 2>> heights_over(const PlacedFace& large,
                                                   const PlacedFace& small) {
   std::vector<Vec3> polygon(small.corner_m.begin(), small.corner_m.end());
@@ -150,7 +153,7 @@ class Search {
  public:
   Search(const Scene& scene, double size_m) : scene_(scene), size_m_(size_m) {}
 
-  // Among faces with one key.
+  // Compares all faces with one key.
   void among(std::span<const KeyedFace> some) {
     if (some.size() < 2) return;
     std::vector<PlacedFace> faces;
@@ -258,10 +261,11 @@ std::vector<Pair> find_pairs(const Scene& scene, const Vec3& centre_m, double si
   return search.pairs();
 }
 
-// Number of steps by which each face is displaced along its normal: one in front of an opposite
-// face, one in front of each equal-facing face, and back from a face towards which it faces.
+// Number of steps by which each face is displaced along its normal. A face moves one step forwards
+// from an opposite face, and one step in front of each face behind it with equal orientation. It
+// moves backwards from a face whose front faces it.
 std::map<Face, int> levels_of(const std::vector<Pair>& pairs) {
-  constexpr int most = 100;  // faces in one place; an order that contradicts itself ends there
+  constexpr int most = 100;  // limit for a contradictory order of faces
   std::map<Face, int> levels;
   for (const Pair& pair : pairs) {
     if (pair.relation == Relation::parted) continue;
@@ -294,7 +298,7 @@ std::map<Face, int> levels_of(const std::vector<Pair>& pairs) {
   return levels;
 }
 
-// The meshes of some instances, copied where other instances have them too.
+// Gives some instances their own copies of meshes that other instances use, too.
 class OwnMeshes {
  public:
   explicit OwnMeshes(Scene& scene) : scene_(scene), users_(scene.meshes.size(), 0) {
@@ -318,7 +322,7 @@ class OwnMeshes {
   std::vector<int> users_;
 };
 
-// Light that passes through one face of a sheet starts behind the others.
+// Sets the depths of sheets, so that light that passes through one face starts behind the others.
 void set_depths(Scene& scene, const std::vector<Pair>& pairs, const std::map<Face, int>& levels,
                 double size_m) {
   for (const Pair& pair : pairs) {
@@ -350,8 +354,8 @@ void move_faces(Scene& scene, const std::map<Face, int>& levels, double step_m) 
   }
 }
 
-// Cuts a triangle of a mesh along a plane (of the mesh's frame): it and one or two new ones. Leaves
-// it whole where a side has less than a sliver.
+// Cuts a triangle of a mesh along a plane (in the mesh's frame) into two or three triangles. Does
+// nothing if the part on one side is a sliver.
 void cut_triangle(Mesh& mesh, uint32_t triangle, const Vec3& normal, const Vec3& point_m) {
   constexpr double sliver = 1e-9;  // of the triangle's area
   const std::array<uint32_t, 3> corners = mesh.triangles[triangle];
@@ -361,7 +365,7 @@ void cut_triangle(Mesh& mesh, uint32_t triangle, const Vec3& normal, const Vec3&
   };
   std::array<double, 3> side{};
   for (size_t k = 0; k < 3; ++k) side[k] = normal.dot(mesh.vertices_m[corners[k]] - point_m);
-  std::array<std::vector<uint32_t>, 2> parts;  // before the plane, behind it
+  std::array<std::vector<uint32_t>, 2> parts;  // in front of the plane, behind it
   for (size_t k = 0; k < 3; ++k) {
     const size_t next = (k + 1) % 3;
     parts[side[k] < 0.0].push_back(corners[k]);
@@ -391,7 +395,7 @@ void cut_triangle(Mesh& mesh, uint32_t triangle, const Vec3& normal, const Vec3&
   mesh.triangles.insert(mesh.triangles.end(), pieces.begin() + 1, pieces.end());
 }
 
-// Cuts faces along the lines on which they cross, after which the pieces touch there.
+// Cuts faces along their lines of intersection. The pieces then touch there.
 bool cut_crossings(Scene& scene, const std::vector<Pair>& pairs) {
   constexpr size_t most = 10000;  // cuts
   struct Cut {
@@ -410,7 +414,7 @@ bool cut_crossings(Scene& scene, const std::vector<Pair>& pairs) {
     }
   }
   OwnMeshes meshes(scene);
-  std::map<Face, std::vector<uint32_t>> pieces;  // of a face that is cut
+  std::map<Face, std::vector<uint32_t>> pieces;  // by the face that is cut
   for (const Cut& cut : cuts) {
     std::vector<uint32_t>& of = pieces.try_emplace(cut.face, 1, cut.face.triangle).first->second;
     Mesh& mesh = meshes.of(cut.face.instance);

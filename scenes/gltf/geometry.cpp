@@ -33,7 +33,7 @@ std::vector<Triangle> triangles_of(const std::vector<uint32_t>& corners, int mod
 
 bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
   // Differences of floats are exact to 1e-16 of the longest side, their cross product to about
-  // 1e-15 of its square; below, the normal would be noise.
+  // 1e-15 of its square. Below the limit the normal would be noise.
   constexpr double rounding = 1e-14;
   const double longest =
       std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
@@ -60,7 +60,7 @@ size_t restart_index(int component_type) {
 
 }  // namespace
 
-// Vertices of one primitive, read as they are asked for.
+// Vertices of one primitive, read on demand.
 class Vertices {
  public:
   Vertices(const Document& document, const tinygltf::Primitive& primitive, MemoryBudget* budget)
@@ -162,7 +162,7 @@ std::optional<PrimitiveMesh> GeometryReader::read(int mesh, size_t index) {
     new_index_.resize(vertices.count(), unused);
   }
   const std::vector<uint32_t> all_corners = corners(primitive, vertices.count(), where);
-  // Room for the triangles, twice, and for as many vertices as they can use.
+  // Memory for two copies of the triangles, and for all vertices that they can use.
   const size_t corners_per_triangle = primitive.mode == TINYGLTF_MODE_TRIANGLES ? 3 : 1;
   budget_->charge(all_corners.size() / corners_per_triangle, 2 * sizeof(Triangle), where);
   budget_->charge(std::min(all_corners.size(), vertices.count()),

@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr const char* punctual_extension = "KHR_lights_punctual";
 constexpr const char* profile_extension = "EXT_lights_ies";
 
-// The extension's object in `owner`; an empty one where there is none.
+// The extension's object in `owner`; an empty object if there is none.
 json lights_object(const json& owner, const char* extension) {
   const auto extensions = owner.find("extensions");
   if (extensions == owner.end() || !extensions->is_object()) return json::object();
@@ -41,7 +41,7 @@ struct ListedLight {
   std::string where;  // JSON pointer
 };
 
-// The one that a node places.
+// The light that a node places; empty if it places none.
 std::optional<ListedLight> light_at(const Document& document, int node, const char* extension) {
   const json reference =
       lights_object(document.json["nodes"][static_cast<size_t>(node)], extension);
@@ -57,7 +57,7 @@ std::optional<ListedLight> light_at(const Document& document, int node, const ch
   return ListedLight{lights[which], which, gltf::pointer("extensions", extension, "lights", which)};
 }
 
-// A light without its place.
+// A light without its position.
 GltfLight described_light(const Document& document, const ListedLight& listed) {
   const auto& [light, number, where] = listed;
   constexpr double widest_rad = 0.5 * pi, usual_rad = 0.25 * pi;
@@ -71,7 +71,7 @@ GltfLight described_light(const Document& document, const ListedLight& listed) {
       const json& angle = spot["outerConeAngle"];
       described.outer_cone_rad = angle.is_number() ? angle.get<double>() : 0.0;
     }
-    // π/2 as a single number is a little more.
+    // π/2 in single precision is slightly larger than π/2.
     if (!(described.outer_cone_rad > 0.0 && described.outer_cone_rad <= widest_rad * (1 + 1e-6))) {
       throw document.wrong(where + "/spot/outerConeAngle", std::to_string(described.outer_cone_rad),
                            "above 0, at most π/2");
@@ -104,12 +104,12 @@ GltfLight described_profile(const Document& document, const ListedLight& listed,
   return described;
 }
 
-// (x, y, z) with y up becomes (x, −z, y).
+// Converts (x, y, z) with y up to (x, −z, y).
 Vec3 turned(const Vec3& file) {
   return {file.x(), -file.z(), file.y()};
 }
 
-// Rotation of a lamp about its `direction` that turns its x axis to `across`.
+// Rotation angle [rad] of a lamp about its `direction` that turns its x axis to `across`.
 double turn_towards(const Vec3& direction, const Vec3& across) {
   const RigidTransform lab_from_lamp = frame_looking_along(direction, Vec3::Zero());
   const Vec3 seen = lab_from_lamp.rotation.conjugate() * across;
@@ -221,7 +221,7 @@ Settings source_at_light(const Settings& source, const std::vector<GltfLight>& l
     fill_in("direction", numbers_node(light.direction, where));
     aimed_here = !stems.contains("direction");
   }
-  // A cone is the beam of an LED; lamps of other kinds have their own beams.
+  // The cone becomes the beam of an LED; lamps of other kinds define their own beams.
   const auto stated = keys.find("kind");
   const auto* text =
       stated == keys.end() ? nullptr : std::get_if<std::string>(&stated->second.value);

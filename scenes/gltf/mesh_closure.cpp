@@ -28,7 +28,7 @@ std::vector<Edge> edges_of(const Mesh& mesh, const std::vector<uint32_t>& first)
   return edges;
 }
 
-// Whether `point` lies within the edge from a to b, to a millionth of its length.
+// Whether `point` lies on the inside of the edge from a to b, to a millionth of its length.
 bool lies_on(const Vec3& point, const Vec3& a, const Vec3& b) {
   constexpr double tolerance = 1e-6;
   const Vec3 along = b - a, to = point - a;
@@ -37,8 +37,8 @@ bool lies_on(const Vec3& point, const Vec3& a, const Vec3& b) {
          (to - t * along).norm() <= tolerance * along.norm();
 }
 
-// T-junctions have open edges on both sides, so only their ends need be tried; they are sorted
-// along x, and each edge looks at its own interval.
+// T-junctions have open edges on both sides, so only the ends of open edges are tested. They are
+// sorted along x, and each edge tests only those in its interval.
 size_t count_t_junctions(const Mesh& mesh, const std::vector<Edge>& open) {
   std::vector<uint32_t> ends;
   for (const Edge& edge : open) ends.insert(ends.end(), {edge.low, edge.high});
@@ -83,7 +83,8 @@ void add(const Mesh& mesh, MeshClosure& closure) {
   if (open.size() <= max_open_edges) closure.t_junctions += count_t_junctions(mesh, open);
 }
 
-// A sheet that is drawn from both sides has no open edge, and nothing inside.
+// Whether the mesh encloses a volume. A sheet drawn from both sides has no open edge, but no
+// volume.
 bool has_volume(const Mesh& mesh) {
   constexpr double rounding = 1e-9;
   double six_volumes = 0.0, two_areas = 0.0;

@@ -1,4 +1,4 @@
-// Whether the surfaces of a scene are closed: where light can slip through that should not.
+// Tests whether the surfaces of a scene are closed, or light can pass through cracks.
 #pragma once
 
 #include <cstddef>
@@ -10,26 +10,26 @@
 
 namespace photorque {
 
-// Counts over all meshes. Vertices at the same place count as one (exporters split them along
-// creases and seams of texture).
+// Counts over all meshes. Vertices at the same position count as one (exporters split them along
+// creases and texture seams).
 struct MeshClosure {
   size_t meshes = 0;
-  size_t closed = 0;      // meshes whose every edge joins two triangles
-  size_t open_edges = 0;  // of one triangle only: rims of sheets, or cracks
-  // Open edges on which a vertex of the same mesh lies: the triangles on both sides do not meet at
-  // the same corners, so that rounding leaves gaps (T-junctions).
+  size_t closed = 0;      // meshes whose edges all join two triangles
+  size_t open_edges = 0;  // edges of one triangle only: rims of sheets, or cracks
+  // Open edges on which a vertex of the same mesh lies (T-junctions): the triangles on both sides
+  // do not share corners, so that rounding leaves gaps.
   size_t t_junctions = 0;
-  // Meshes with open edges, but fewer than the root of all edges, which the rim of a square sheet
-  // has at least: meant to be closed, it seems. (Not of every sheet: of a disc in many rings the
-  // rim has fewer. For notices alone.)
+  // Meshes with fewer open edges than the square root of the number of edges, which is the minimum
+  // for the rim of a square sheet: probably meant to be closed. (A disc of many rings also has
+  // fewer; the count is used only for notices.)
   size_t almost_closed = 0;
-  std::vector<uint8_t> encloses;  // per mesh: closed or almost, round a volume
+  std::vector<uint8_t> encloses;  // per mesh: closed or almost closed, with a volume
 };
 
-// Meshes with more than 100,000 open edges are not searched for T-junctions.
+// Counts for all meshes. T-junctions are not searched in meshes with more than 100,000 open edges.
 MeshClosure closure_of(const Scene& scene);
 
-// One line of text when there are cracks; empty for closed bodies and plain sheets.
+// One line of text if there are cracks; empty for closed bodies and plain sheets.
 std::string describe_closure(const MeshClosure& closure);
 
 }  // namespace photorque

@@ -28,7 +28,7 @@ std::vector<int> roots_of(const Document& document) {
   return roots;
 }
 
-// Meshes that are deformed before they are drawn would be traced in another shape than drawn.
+// Rejects meshes that are deformed for drawing: the traced shape would differ from the drawn one.
 void refuse_deformation(const Document& document, int index) {
   const tinygltf::Node& node = document.model.nodes[static_cast<size_t>(index)];
   const tinygltf::Mesh& mesh = document.model.meshes[static_cast<size_t>(node.mesh)];
@@ -72,7 +72,7 @@ bool is_unit(const Quat& rotation) {
 
 bool is_invertible(const Affine& transform) {
   const Mat3 axes = transform.linear();
-  // The determinant of the normalised axes: the sine of the angle left between them.
+  // Determinant of the normalised axes: it measures how far they are from one plane.
   const double lengths = axes.col(0).norm() * axes.col(1).norm() * axes.col(2).norm();
   return transform.matrix().allFinite() && std::isnormal(lengths) &&
          std::abs(axes.determinant()) > 1e-12 * lengths;
@@ -80,7 +80,7 @@ bool is_invertible(const Affine& transform) {
 
 void visit_nodes(const Document& document, MemoryBudget* budget,
                  const std::function<void(const NodeVisit&)>& visit) {
-  std::vector<NodeVisit> waiting;  // a stack: files decide how deep it gets
+  std::vector<NodeVisit> waiting;  // an explicit stack, because files determine the depth
   for (const int root : std::views::reverse(roots_of(document))) {
     waiting.push_back({root, 1, "", Affine::Identity()});
   }
@@ -129,7 +129,7 @@ namespace {
 
 constexpr const char* extension = "EXT_mesh_gpu_instancing";
 
-// An attribute, if the node has it.
+// Reader of an attribute, if the node has it.
 std::optional<AccessorReader> attribute(const Document& document, const nlohmann::json& attributes,
                                         const char* name, const std::string& where,
                                         MemoryBudget* budget) {

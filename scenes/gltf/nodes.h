@@ -14,14 +14,14 @@ namespace photorque::gltf {
 // 3.5.2). The rotation is normalised.
 Affine parent_from_node(const tinygltf::Node& node);
 
-// Whether a quaternion has unit length within 1 %: in normalized bytes the error is up to 0.8 %.
+// Whether a quaternion has unit length within 1 %; normalised bytes have an error of up to 0.8 %.
 bool is_unit(const Quat& rotation);
 
-// Finite, and with three axes that are neither zero nor (to 1e-12) in one plane, however unequal
-// their lengths.
+// Whether the transform is finite and its three axes are nonzero and (to 1e-12) not in one plane.
+// The lengths of the axes may differ.
 bool is_invertible(const Affine& transform);
 
-// A mesh in the world of the file (glTF axes and units).
+// A placed mesh in the world of the file (glTF axes and units).
 struct Placement {
   int node = 0;
   int mesh = 0;
@@ -38,7 +38,7 @@ struct NodeVisit {
   Affine world_from_node = Affine::Identity();
 };
 
-// Calls `visit` for every node of the default scene, parents first. As place_meshes().
+// Calls `visit` for every node of the default scene, parents first. Errors as in place_meshes().
 void visit_nodes(const Document& document, MemoryBudget* budget,
                  const std::function<void(const NodeVisit&)>& visit);
 
@@ -49,11 +49,12 @@ void visit_nodes(const Document& document, MemoryBudget* budget,
 // or overflow, for skinned meshes and for morph targets whose weights are not zero.
 std::vector<Placement> place_meshes(const Document& document, MemoryBudget* budget);
 
-// EXT_mesh_gpu_instancing: one node that repeats its mesh.
+// EXT_mesh_gpu_instancing: one node with several instances of its mesh.
 
-// The places of a node's mesh, relative to the node: one identity, or one per instance of the
-// extension, from its attributes TRANSLATION (VEC3 of float), ROTATION (VEC4 of float, or of
-// normalized signed bytes or shorts) and SCALE (VEC3 of float), each optional.
+// Transforms of the instances of a node's mesh, relative to the node: one identity, or one per
+// instance of the extension. They come from its attributes TRANSLATION (VEC3 of float), ROTATION
+// (VEC4 of float, or of normalized signed bytes or shorts) and SCALE (VEC3 of float), each
+// optional.
 // Source: KhronosGroup/glTF, extensions/2.0/Vendor/EXT_mesh_gpu_instancing.
 // Throws InputError for attributes of other types or of different counts, and for instances that
 // are not invertible.

@@ -20,7 +20,7 @@ double luminance(const std::vector<double>& rgb) {
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 }
 
-// Fractions of a surface that covers everything.
+// Grey fractions of a surface, before its coverage is applied.
 struct Grey {
   double specular = 0, diffuse = 0, transmitted = 0;
   double alpha = 1;
@@ -60,14 +60,15 @@ Grey from_specular_glossiness(const json& values) {
           diffuse[3]};
 }
 
-// The fraction of the surface that is there.
+// Fraction of the surface that is covered by material.
 double coverage(const json& material, double alpha) {
   const std::string mode = material.value("alphaMode", "OPAQUE");
   if (mode == "BLEND") return alpha;
   return mode == "MASK" && alpha < material.value("alphaCutoff", 0.5) ? 0.0 : 1.0;
 }
 
-// A dielectric that names its index and covers everything: glass over matt ground, or a clear pane.
+// Glass over matt ground, or a clear pane, for a dielectric that states its index and covers the
+// whole surface.
 std::optional<OpticalSurface> derived_glass(const json& material, int bands,
                                             const std::string& name) {
   const json extensions = material.value("extensions", json::object());
@@ -92,7 +93,7 @@ std::optional<OpticalSurface> derived_glass(const json& material, int bands,
   return behind_glass(base, m.index, alpha);
 }
 
-// The extras' table, if there is one.
+// The table `photorque` of the extras, if there is one.
 std::optional<Settings> extras_of(const Document& document, int index) {
   if (index < 0) return std::nullopt;
   const json& material = document.json["materials"][static_cast<size_t>(index)];
@@ -131,7 +132,7 @@ std::optional<UvTransform> uv_transform(const Document& document, int material) 
   if (!turn.is_number()) {
     throw document.wrong(at.to_string() + "/rotation", describe_json(turn), "a number");
   }
-  // v runs downwards: a turn against the clock on the picture is one with it in (u, v).
+  // v runs downwards, so a counter-clockwise rotation on the picture is clockwise in (u, v).
   return Eigen::Translation2d(pair_of("offset", Vec2::Zero())) *
          Eigen::Rotation2Dd(-turn.get<double>()) * Eigen::Scaling(pair_of("scale", Vec2::Ones()));
 }
@@ -177,7 +178,7 @@ OpticalSurface derived_surface(const json& material, int bands, std::string name
     surface.specular[band] = covered * grey.specular;
     surface.diffuse[band] = covered * grey.diffuse;
     surface.transmitted[band] = 1 - covered + covered * grey.transmitted;
-    // Rounding must not make a perfect reflector emit.
+    // Rounding must not let a perfect reflector emit.
     surface.absorbed[band] = std::max(
         0.0, 1 - surface.specular[band] - surface.diffuse[band] - surface.transmitted[band]);
   }

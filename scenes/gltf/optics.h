@@ -21,18 +21,18 @@ struct MaterialOptics {
 // Materials of an experiment, by name.
 using MaterialOverrides = std::map<std::string, SheetOptics>;
 
-// Reads the experiment's [[material]] tables, all of them, whether their material is in use or not.
-// Throws InputError as read_sheet() does, for a name twice, and for a name that no material of the
+// Reads all [[material]] tables of the experiment, including those of unused materials. Throws
+// InputError like read_sheet(), for a repeated name, and for a name that no material of the
 // document has (with the most similar one).
 MaterialOverrides read_overrides(const Document& document, const GltfOptions& options,
                                  const SurfaceFiles& files);
 
-// The optics of material `index` (−1: of primitives without one, the specification's default), from
-// the first of:
+// Optics of material `index` (−1: the specification's default for primitives without material),
+// from the first of:
 //   1. an override of the same name;
 //   2. the material's extras: {"photorque": {"absorptance": 0.9, …}}, keys as in read_sheet();
 //   3. the values meant for drawing, by the rule of derived_surface().
-// Throws InputError as read_sheet() does, and for keys in extras.photorque that are unknown.
+// Throws InputError like read_sheet(), and for unknown keys in extras.photorque.
 MaterialOptics material_optics(const Document& document, int index, int bands,
                                const MaterialOverrides& overrides, const SurfaceFiles& files);
 
@@ -48,32 +48,32 @@ MaterialOptics material_optics(const Document& document, int index, int bands,
 // MASK an alpha below the cutoff leaves the whole surface open. KHR_materials_pbrSpecularGlossiness
 // replaces R by the luminance of its specular colour, D by that of its diffuse colour times 1 − R,
 // and r by 1 − glossiness. Textures and emission are ignored.
-// A dielectric (m = 0) that carries KHR_materials_ior, n from 1 to 10, and covers everything
-// depends on the angle instead, by raytrace/surfaces/glass.h: glass of index n and roughness r over
-// ground that scatters Y of what enters (t = 0), or a pane that passes Y on a way through (t = 1, r
-// = 0). It replaces measured values only roughly: colours for drawing hardly determine absorptance.
+// A dielectric (m = 0) with KHR_materials_ior, n from 1 to 10, that covers the whole surface
+// depends on the angle instead, by raytrace/surfaces/glass.h. It is glass of index n and roughness
+// r over ground that scatters the fraction Y of the entering light (t = 0), or a pane with the
+// transmittance Y (t = 1, r = 0). This is only a rough substitute for measured values: colours for
+// drawing hardly determine absorptance.
 OpticalSurface derived_surface(const nlohmann::json& material, int bands, std::string name);
 
-// The derived surface with the base colour multiplied by a picture's mean, linear red, green and
-// blue.
+// Derived surface with the base colour multiplied by a picture's mean, linear red, green and blue.
 OpticalSurface derived_surface(nlohmann::json material, const std::array<double, 3>& picture,
                                int bands, std::string name);
 
-// KHR_texture_transform of the base colour's texture: where on the picture texture coordinates lie,
-// scaled, then turned, then moved. Nothing for a material without one. Exporters that pack texture
-// coordinates into integers unpack them by it. Throws InputError for numbers that are none.
+// KHR_texture_transform of the base colour's texture: texture coordinates on the picture are
+// scaled, then rotated, then displaced. Empty for a material without it. Exporters that pack
+// texture coordinates into integers use it. Throws InputError for invalid numbers.
 using UvTransform = Eigen::Affine2d;
 std::optional<UvTransform> uv_transform(const Document& document, int material);
 
-// Whether a texture would change the result of derived_surface() from the factors alone.
+// Whether a texture, which derived_surface() ignores, would change its result.
 bool has_ignored_texture(const nlohmann::json& material);
 
-// Converts JSON to the tree that core/settings reads. Throws InputError for null, which settings do
-// not have.
+// Converts JSON to the tree of core/settings. Throws InputError for null, which settings do not
+// support.
 SettingsNode settings_from_json(const nlohmann::json& value, const InputLocation& where);
 
-// "absorptance 0.83, specular 0.01, diffuse 0.16, transmittance 0" of the first band; then the
-// BSDF in a few words.
+// Fractions of the first band, such as "absorptance 0.83, specular 0.01, diffuse 0.16,
+// transmittance 0"; then a short description of the BSDF.
 std::string describe_surface(const OpticalSurface& surface);
 
 }  // namespace photorque::gltf

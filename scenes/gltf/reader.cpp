@@ -25,10 +25,10 @@ using gltf::MemoryBudget;
 using gltf::Placement;
 using gltf::pointer;
 
-// Larger than any platform, and than all spacecraft but a few.
+// Larger than any platform and most spacecraft; a larger model causes a notice.
 constexpr double surprising_radius_m = 100.0;
 
-// (x, y, z) with y up becomes (x, −z, y).
+// Converts (x, y, z) with y up to (x, −z, y).
 Affine body_from_world(double metres_per_unit) {
   Affine transform = Affine::Identity();
   transform.linear() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
@@ -40,7 +40,7 @@ std::string in_quotes(const std::string& name) {
   return name.empty() ? "material without a name" : "material '" + name + "'";
 }
 
-// Puts the parts of a document together.
+// Builds the scene from a document.
 class Assembly {
  public:
   Assembly(const Document& document, const GltfOpen& open, const GltfOptions& options,
@@ -79,8 +79,8 @@ class Assembly {
   }
 
  private:
-  // The mesh of a primitive, read at its first use; nothing if it has no triangles. Primitives that
-  // take the same accessors in the same way share one.
+  // Mesh of a primitive, read at its first use; empty if it has no triangles. Primitives that use
+  // equal accessors in the same way share one mesh.
   std::optional<uint32_t> mesh_of(int mesh, size_t index, int material) {
     const tinygltf::Primitive& primitive =
         document_.model.meshes[static_cast<size_t>(mesh)].primitives[index];
@@ -112,8 +112,8 @@ class Assembly {
                                ": texture coordinates that are not finite are ignored");
     }
     if (read->mesh.triangles.empty()) return std::nullopt;
-    // Includes the corners of omitted triangles: a very distant corner makes its triangle a needle
-    // and would otherwise not be noticed.
+    // Includes the corners of omitted triangles: a very distant corner makes its triangle a needle,
+    // which would otherwise remain unnoticed.
     double square = read->degenerate_reach * read->degenerate_reach;
     for (const Vec3& vertex : read->mesh.vertices_m) {
       square = std::max(square, vertex.squaredNorm());
@@ -146,7 +146,8 @@ class Assembly {
     material_indices_.push_back(material);
   }
 
-  // Rays count from the middle of the scene in single precision, which rounds to 6e-8 of its size.
+  // Reports parts that are too small: rays are relative to the middle of the scene in single
+  // precision, which rounds to 6e-8 of its size.
   void check_resolution() {
     constexpr double too_small = 1e-6;  // of the scene's size
     Eigen::AlignedBox3d all;
@@ -170,7 +171,8 @@ class Assembly {
                           "out what is far away)");
   }
 
-  // Every instance whose colour comes from a picture becomes one for each step of it.
+  // Replaces every instance with a coloured picture by one instance per luminance step of the
+  // picture.
   void apply_pictures() {
     std::vector<Instance> all;
     std::map<std::pair<uint32_t, int>, std::vector<Instance>> known;  // by mesh and material
@@ -270,7 +272,7 @@ class Assembly {
     return model_.materials.back();
   }
 
-  // Files that `open` finds are inputs.
+  // Wraps `open` so that the files it finds become inputs.
   SurfaceFiles recorded(const SurfaceFiles& open) {
     if (!open) return {};
     return [this, open](const std::string& name) {
@@ -283,7 +285,7 @@ class Assembly {
     };
   }
 
-  // Materials of the same name and values are common; one line names them all.
+  // Several materials may share name and values; their notice appears once.
   void add_notice(const std::string& line) {
     if (reported_.insert(line).second) model_.notices.push_back(line);
   }
@@ -326,14 +328,14 @@ class Assembly {
   const GltfOptions& options_;
   MemoryBudget* budget_;
   gltf::GeometryReader geometry_;
-  GltfModel model_;  // before the members that read files into it
+  GltfModel model_;  // must precede the members that read files into it
   const GltfOpen& open_;
   SurfaceFiles beside_model_;
   gltf::MaterialOverrides overrides_;
   std::map<std::tuple<int, int, int, int, int>, std::optional<uint32_t>> meshes_;
-  std::vector<double> radii_;          // of each mesh about its own origin
-  std::map<int, size_t> materials_;    // index in the file → in model_.materials
-  std::vector<int> material_indices_;  // of each instance, in the file
+  std::vector<double> radii_;          // radius of each mesh about its own origin
+  std::map<int, size_t> materials_;    // index in the file → index in model_.materials
+  std::vector<int> material_indices_;  // per instance: index in the file
   std::set<std::string> reported_;
   size_t degenerate_ = 0;
   size_t without_triangles_ = 0;

@@ -13,7 +13,7 @@ using Colour = std::array<double, 3>;
 
 constexpr int luminance_steps = 32;
 
-// The colour of the picture at texture coordinates: the texel that holds them.
+// Colour of the texel at texture coordinates.
 Colour texel(const BaseColours& picture, const Vec2& uv) {
   const auto place = [](double coordinate, int size) {
     const double part = coordinate - std::floor(coordinate);
@@ -49,7 +49,7 @@ double area_of(const Mesh& mesh, const std::array<uint32_t, 3>& triangle) {
   return 0.5 * (mesh.vertices_m[triangle[1]] - a).cross(mesh.vertices_m[triangle[2]] - a).norm();
 }
 
-// These triangles with the vertices that they use.
+// A mesh of these triangles with the vertices that they use.
 Mesh part_of(const Mesh& mesh, const std::vector<size_t>& triangles) {
   Mesh part;
   std::map<uint32_t, uint32_t> moved;
@@ -82,7 +82,7 @@ std::optional<BaseColours> base_colour_picture(const Document& document, int mat
   if (!document.json.contains(place)) return std::nullopt;
   const json& info = document.json[place];
   if (!info.is_object()) return std::nullopt;
-  // The first coordinates alone are read.
+  // Only the first set of texture coordinates is supported.
   json coordinates = info.value("texCoord", json(0));
   const json::json_pointer other("/extensions/KHR_texture_transform/texCoord");
   if (info.contains(other)) coordinates = info[other];

@@ -13,21 +13,20 @@
 
 namespace photorque::gltf {
 
-// The picture of a material's base colour; nothing for a material without one, or with one on
-// other texture coordinates than the first. Throws InputError for references and pictures that are
-// wrong.
+// The picture of a material's base colour. Empty for a material without one, or with one on texture
+// coordinates other than the first set. Throws InputError for invalid references and pictures.
 std::optional<BaseColours> base_colour_picture(const Document& document, int material,
                                                const GltfOpen& open, const PictureReader& read,
                                                MemoryBudget* budget);
 
-// Triangles of one mesh that look alike.
+// Triangles of one mesh in one luminance step.
 struct TextureStep {
   Mesh mesh;
   std::array<double, 3> colour{};  // mean of the picture, linear red, green and blue
 };
 
-// Cuts a mesh with texture coordinates into such parts. Pictures repeat beyond their edges. The
-// mean over a triangle comes from up to 2080 points evenly spread in it.
+// Divides a mesh with texture coordinates into luminance steps. Pictures repeat beyond their edges.
+// The mean over a triangle comes from up to 2080 evenly spaced points.
 std::vector<TextureStep> texture_steps(const Mesh& mesh, const BaseColours& picture);
 
 }  // namespace photorque::gltf

@@ -20,7 +20,7 @@ bool uses_extension(const Document& document, const char* name) {
 }
 
 // A row of equal items in a bufferView. Offsets and counts are below 2^53 and strides below 256
-// (check_schema), so nothing here overflows.
+// (check_schema), so that the arithmetic does not overflow.
 struct Row {
   uint64_t offset = 0, count = 0, stride = 0, item_bytes = 0;
   uint64_t end() const { return offset + (count - 1) * stride + item_bytes; }
@@ -113,7 +113,8 @@ class Checker {
     return document_.wrong(where, found, expected);
   }
 
-  // Floats, or with KHR_mesh_quantization short integers of any kind.
+  // Whether the accessor may hold coordinates: floats or, with KHR_mesh_quantization, bytes and
+  // shorts.
   bool is_coordinate(const tinygltf::Accessor& accessor) const {
     return accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT ||
            (quantized_ && accessor.componentType <= TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
@@ -226,7 +227,7 @@ void check_transform(const Document& document, size_t i) {
   const std::string where = pointer("nodes", i);
   if (!node.matrix.empty()) {
     const auto& m = node.matrix;
-    // Exporters round; more than this would be a perspective.
+    // Tolerance for rounding by exporters; larger values would be a perspective.
     constexpr double tolerance = 1e-6;
     if (std::hypot(std::hypot(m[3], m[7]), std::hypot(m[11], m[15] - 1.0)) > tolerance) {
       throw document.wrong(where + "/matrix", "a last row other than 0, 0, 0, 1",
@@ -248,7 +249,7 @@ void check_transform(const Document& document, size_t i) {
 
 constexpr int none = -1;
 
-// The parent of every node.
+// Parent of every node.
 std::vector<int> parents_of(const Document& document) {
   const std::vector<tinygltf::Node>& nodes = document.model.nodes;
   std::vector<int> parents(nodes.size(), none);
@@ -285,7 +286,7 @@ void refuse_cycles(const Document& document, const std::vector<int>& parents) {
   }
 }
 
-// A root that is listed twice, or also a child, would put its triangles there twice.
+// A root that is listed twice, or that is also a child, would place its triangles twice.
 void check_roots(const Document& document, const std::vector<int>& parents) {
   const std::vector<tinygltf::Scene>& scenes = document.model.scenes;
   for (size_t s = 0; s < scenes.size(); ++s) {

@@ -34,15 +34,15 @@ Json to_json(const SettingsNode& node) {
   return items;
 }
 
-// Body (x, y, z) is glTF (x, z, −y).
+// Converts body (x, y, z) to glTF (x, z, −y).
 Vec3 to_gltf_axes(const Vec3& body) {
   return {body.x(), body.z(), -body.y()};
 }
 
-// The binary buffer and the views and accessors that cut it up.
+// The binary buffer, with its views and accessors.
 class Buffer {
  public:
-  // Rows of `columns` numbers; returns the accessor's index.
+  // Appends rows of `columns` numbers; returns the accessor's index.
   template <typename T>
   size_t add(const std::vector<T>& numbers, int component_type, size_t columns, int target) {
     const auto bytes = std::as_bytes(std::span(numbers));

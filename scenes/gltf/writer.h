@@ -1,4 +1,4 @@
-// Scenes out as glTF 2.0: one self-contained file, the same bytes for the same input.
+// Writes scenes as glTF 2.0: one self-contained file, with equal bytes for equal input.
 #pragma once
 
 #include <optional>
@@ -14,14 +14,14 @@ namespace photorque {
 // A material, drawn grey.
 struct GltfWriterMaterial {
   std::string name;
-  std::optional<SettingsNode> optics;  // written as they are to extras.photorque
+  std::optional<SettingsNode> optics;  // written unchanged to extras.photorque
 };
 
 // A node of the tree. Body frame; converted to glTF's +Y up on writing.
 struct GltfWriterNode {
   std::string name;
   int parent = -1;                    // index of an earlier node; −1: a root
-  Vec3 translation_m = Vec3::Zero();  // in its parent
+  Vec3 translation_m = Vec3::Zero();  // relative to its parent
   int mesh = -1;                      // index; −1: none
   int material = -1;                  // of the mesh
 };
@@ -32,8 +32,8 @@ struct GltfWriterModel {
   std::vector<GltfWriterNode> nodes;
 };
 
-// The text of a .gltf file with its buffer embedded. Positions are rounded to float, as the format
-// demands. A mesh that several nodes use with one material is stored once.
+// Text of a .gltf file with embedded buffer. Positions are rounded to float, as the format
+// requires. A mesh that several nodes use with the same material is stored once.
 std::string gltf_text(const GltfWriterModel& model);
 
 }  // namespace photorque

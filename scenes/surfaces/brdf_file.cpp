@@ -21,7 +21,7 @@ struct BrdfRow {
   int line;
 };
 
-// The position of each of brdf_columns in the header.
+// Position of each of brdf_columns in the header.
 std::array<size_t, 4> read_header(const std::vector<std::string_view>& fields,
                                   const InputLocation& where) {
   std::array<size_t, 4> places{};
@@ -104,7 +104,8 @@ BrdfTable read_brdf(const std::string& text, const std::string& name) {
   const std::array<std::vector<double>, 3> axes = {distinct(rows, 0), distinct(rows, 1),
                                                    distinct(rows, 2)};
   const size_t entries = axes[0].size() * axes[1].size() * axes[2].size();
-  // A table that is whole has as many rows; checked first, so that scattered angles cost nothing.
+  // A complete table has as many rows as combinations of angles. This is checked first, so that
+  // scattered angles do not cause a large allocation.
   if (entries > 2 * max_brdf_rows) {
     throw InputError({name}, "",
                      std::to_string(rows.size()) + " rows of " + std::to_string(entries) +
@@ -140,7 +141,7 @@ std::optional<std::string> coverage_notice(const BrdfTable& table) {
   words << "measured up to an incidence of " << incidence_rad / degree_rad
         << " deg and a scatter of " << scatter_rad / degree_rad
         << " deg; to 90 deg the last values go on";
-  // A table in radians has no angle above pi/2.
+  // Detects tables in radians: they have no angle above π/2.
   constexpr double right_angle = pi / 2.0 + 1e-2;
   const double widest = std::max(incidence_rad, scatter_rad) / degree_rad;
   const double azimuth = table.azimuth_rad.back() / degree_rad;

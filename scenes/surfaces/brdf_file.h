@@ -5,9 +5,9 @@
 //   10,0,0,0.21
 //   …
 //
-// Columns and rows have any order; commas separate the columns. Angles are those of BrdfTable, in
-// degrees. Every incidence has every scatter angle and every azimuth once. With a single azimuth,
-// scattering does not depend on it.
+// Columns and rows may be in any order; commas separate the columns. Angles are those of BrdfTable,
+// in degrees. Every incidence must occur with every scatter angle and every azimuth exactly once.
+// With a single azimuth, scattering does not depend on it.
 #pragma once
 
 #include <optional>
@@ -17,13 +17,12 @@
 
 namespace photorque {
 
-// `name` is how messages call the file. Throws InputError with the line for a header that lacks a
-// column, numbers that are none or out of range, and rows that are missing or there twice; for more
-// than a million rows too.
+// Messages call the file `name`. Throws InputError with the line for a header that lacks a column,
+// invalid or out-of-range numbers, and missing or repeated rows; also for more than a million rows.
 BrdfTable read_brdf(const std::string& text, const std::string& name);
 
-// A notice for the user if a table ends below 45 deg, with its last angle: its last values continue
-// over the rest of the hemisphere. Empty otherwise, and for a constant.
+// A notice if a table ends below 45 deg, with its last angle: its last values are extended over the
+// rest of the hemisphere. Empty otherwise, and for a constant BRDF.
 std::optional<std::string> coverage_notice(const BrdfTable& table);
 
 }  // namespace photorque

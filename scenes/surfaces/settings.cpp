@@ -74,7 +74,7 @@ constexpr NumberKey emissivity_back("emissivity_back", 1.0, Range::fraction(),
                                     "emissivity of the back side for `reemitted`");
 }  // namespace surface_key
 
-// One of the fractions: its key, and where it goes.
+// A fraction: its key and its member of OpticalSurface.
 struct Fraction {
   NumberKey key;
   BandValues OpticalSurface::*values;
@@ -101,13 +101,13 @@ BandValues read_band_values(const Settings& table, const NumberKey& key, int ban
   return values;
 }
 
-// The fraction that goes back where it came from, and the surface for it, if the user has one.
+// Retroreflected fraction per band; zero without the key.
 BandValues read_retroreflected(const Settings& table, int bands) {
   const NumberKey& key = surface_key::retroreflectance;
   return table.has(key) ? read_band_values(table, key, bands) : BandValues{};
 }
 
-// glTF's roughness as the facets' alpha. Below a thousandth it is a mirror.
+// The facets' alpha from glTF's roughness. Below 0.001 the surface is a mirror.
 double read_alpha(const Settings& table) {
   const double roughness = table.get(surface_key::roughness);
   return std::max(roughness * roughness, 1e-3);
@@ -136,7 +136,7 @@ std::string words(const char* what, double number) {
   return text.str();
 }
 
-// Glass in front of `base`, whose fractions are read.
+// Glass in front of `base`, whose fractions have been read.
 OpticalSurface read_glass(const Settings& table, const OpticalSurface& base) {
   const double index = table.get(surface_key::refractive_index);
   const int kinds = int{any(base.diffuse)} + int{any(base.specular)} + int{any(base.transmitted)};
@@ -189,7 +189,7 @@ void read_slope_error(const Settings& table, Bsdf& bsdf) {
       words("slope error in mrad", 1e3 * slopes_rad[0]) + words(" and", 1e3 * slopes_rad[1]);
 }
 
-// The lobe of the specular fraction, if it is none of a mirror.
+// Reads the lobe of the specular fraction, unless it is that of a mirror.
 void read_lobe(const Settings& table, const OpticalSurface& surface, Bsdf& bsdf) {
   for (const NumberKey& key : {surface_key::roughness, surface_key::slope_error}) {
     if (table.has(key) && !any(surface.specular)) {
@@ -208,7 +208,7 @@ void read_lobe(const Settings& table, const OpticalSurface& surface, Bsdf& bsdf)
   }
 }
 
-// Heat radiation of a sheet, on both of its surfaces.
+// Reads the heat radiation of both sides of a sheet.
 void read_heat(const Settings& table, SheetOptics& sheet) {
   const double reemitted = table.get(surface_key::reemitted);
   const double front = table.get(surface_key::emissivity_front);
@@ -229,7 +229,7 @@ void read_heat(const Settings& table, SheetOptics& sheet) {
   if (sheet.back) heat(*sheet.back);
 }
 
-// Scattering from a table instead of fractions.
+// Reads scattering from a table instead of fractions.
 OpticalSurface read_measured(const Settings& table, int bands, const std::string& name,
                              const SurfaceFiles& files, std::vector<std::string>& notices) {
   using namespace surface_key;

@@ -1,5 +1,4 @@
-// Optical properties as the user writes them, in an experiment's [[material]] or in the extras of a
-// glTF material.
+// Optical properties as stated in an experiment's [[material]] or in the extras of a glTF material.
 #pragma once
 
 #include <functional>
@@ -15,11 +14,11 @@ namespace photorque {
 // The optics of both sides of a sheet.
 struct SheetOptics {
   OpticalSurface front;
-  std::optional<OpticalSurface> back;  // nothing: like the front
+  std::optional<OpticalSurface> back;  // empty: equal to the front
   std::vector<std::string> notices = {};
 };
 
-// The bytes of a file that a table names, or nothing when there is none.
+// Returns the bytes of a file that a table names, or nothing if there is none.
 using SurfaceFiles = std::function<std::optional<std::string>(const std::string& name)>;
 
 // Reads `absorptance`, `specular`, `diffuse`, `transmittance` and `retroreflectance` from a table:
@@ -40,18 +39,18 @@ using SurfaceFiles = std::function<std::optional<std::string>(const std::string&
 // Other keys are left to the caller. Throws InputError with the table's file, line and key.
 OpticalSurface read_surface(const Settings& table, int bands, std::string name);
 
-// As above, with an optional sub-table `back` for the side from which the corners of a triangle run
-// clockwise, and heat radiation of both sides together: `reemitted` (0), the fraction of the
-// absorbed power that leaves at once, and `emissivity_front` and `emissivity_back` (1, 1), in
-// proportion to which it leaves the sides. Instead of fractions a side may have
+// Like read_surface(), with an optional sub-table `back` for the side from which the corners of a
+// triangle run clockwise, and with heat radiation of both sides. `reemitted` (default 0) is the
+// fraction of the absorbed power that leaves at once. It is divided between the sides in proportion
+// to `emissivity_front` and `emissivity_back` (default 1). Instead of fractions a side may have
 //   brdf_file            a table of measured scattering, brdf_file.h, from `files`
 //   brdf_scale           (1) a factor on it, > 0, one number or one per band
-// InputError if the file is missing or wrong, or if the surface would reflect more than falls on
-// it.
+// Throws InputError if the file is missing or invalid, or if the surface would reflect more than it
+// receives.
 SheetOptics read_sheet(const Settings& table, int bands, const std::string& name,
                        const SurfaceFiles& files = {});
 
-// The keys of read_sheet().
+// Keys of read_sheet().
 std::vector<Key> sheet_keys();
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-// A lamp behind a round aperture, and whether optics can make its beam at all.
+// A lamp behind a round aperture, and the check that its beam is physically possible.
 #pragma once
 
 #include <optional>
@@ -9,11 +9,12 @@
 
 namespace photorque {
 
-// Light from every point of a disc alike: position uniform over the area, direction independent of
-// position. The disc lies at z = 0, directions are measured from +z.
+// Light from a disc whose points all radiate alike: the position is uniform over the area, the
+// direction is independent of the position. The disc lies at z = 0, directions are measured
+// from +z.
 class DiscLamp : public Emitter {
  public:
-  // power > 0, aperture diameter > 0; the caller checks.
+  // power > 0 and aperture diameter > 0; the caller checks this.
   DiscLamp(double power_W, double aperture_diameter_m, AngularDistribution directions);
 
   double power_W() const override { return power_W_; }
@@ -29,12 +30,13 @@ class DiscLamp : public Emitter {
 // The emitting area inside a lamp.
 struct Die {
   double area_m2 = 0.0;
-  double index = 1.0;  // refractive index around it: 1 bare, 1.4–1.5 in a dome
+  double index = 1.0;  // refractive index around it: 1 for a bare die, 1.4–1.5 in a dome
 };
 
-// No lossless optics makes light brighter than its source: a Lambertian die in a medium of index n
-// has the etendue π n² A, and a beam needs aperture area × effective solid angle (flux over largest
-// intensity) at least as large. A notice if it is not, with a sufficient aperture.
+// A notice if optics cannot produce the beam, with an aperture that would suffice. Lossless optics
+// cannot make light brighter than its source: a Lambertian die in a medium of index n has the
+// etendue π n² A. For a beam, aperture area × effective solid angle (flux over largest intensity)
+// must be at least as large.
 // Source: R. Winston, J. C. Miñano, P. Benítez, Nonimaging Optics (2005), chapter 2.
 std::optional<std::string> etendue_notice(const std::string& name, const Die& die,
                                           double aperture_diameter_m,

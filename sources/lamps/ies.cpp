@@ -1,6 +1,6 @@
-// A lamp as its maker measured it: an IES LM-63, IES TM-33 or EULUMDAT file, or a table in the
-// experiment. They give the shape alone: the power is the experiment's. The file's nadir (γ = 0)
-// looks along the direction of the lamp.
+// A lamp with measured intensity from an IES LM-63, IES TM-33 or EULUMDAT file, or from a table in
+// the experiment. Only the shape of the intensity is used: the experiment states the power. The
+// file's nadir (γ = 0) points along the direction of the lamp.
 #include "sources/lamps/ies.h"
 
 #include <algorithm>
@@ -93,14 +93,15 @@ std::optional<UniformAperture> uniform_aperture(const PhotometricLamp& lamp) {
   const Opening& opening = lamp.opening();
   const bool disc = opening.shape == Opening::Shape::ellipse && opening.x_m == opening.y_m;
   if (!disc || table.pole != Pole::beam || table.planes() > 1) return std::nullopt;
-  size_t dark = table.polar_rad.size();  // the first of the angles from which on nothing shines
+  size_t dark = table.polar_rad.size();  // the intensity is zero from this angle on
   while (table.intensity[dark - 1] <= 0.0) --dark;
   const double end_rad = table.polar_rad[std::min(dark, table.polar_rad.size() - 1)];
   if (end_rad > 0.5 * pi * (1.0 + 1e-12) || end_rad <= 0.0) return std::nullopt;
   const double radius_m = 0.5 * opening.x_m;
   UniformAperture aperture{radius_m, lamp.power_W() / (pi * radius_m * radius_m), {}};
   if (table.polar_rad.front() > 0.0) aperture.edges_rad.push_back(table.polar_rad.front());
-  // Octaves of the beam's width, so that its core is resolved however far the table goes on.
+  // Edges at octaves of the beam's width, so that its core is resolved however far the table
+  // extends.
   for (double edge_rad = full_width_rad(lamp, 0.5); edge_rad > 0.0 && edge_rad < 0.9 * end_rad;
        edge_rad *= 2.0) {
     if (edge_rad > table.polar_rad.front()) aperture.edges_rad.push_back(edge_rad);
@@ -115,7 +116,7 @@ std::optional<std::string> coarseness_notice(const PhotometricLamp& lamp) {
   if (std::abs(straight) <= allowed) return std::nullopt;
   const std::vector<double>& polar = lamp.intensity().table().polar_rad;
   const double fwhm_rad = full_width_rad(lamp, 0.5);
-  // The step where the intensity falls through half, which is where it is steepest.
+  // The step that contains half of the maximum, where the intensity is steepest.
   const auto above = std::upper_bound(polar.begin() + 1, polar.end() - 1, 0.5 * fwhm_rad);
   const double step_deg = (*above - *(above - 1)) / degree_rad;
   // Both errors are of second order in the step.

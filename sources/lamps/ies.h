@@ -11,11 +11,11 @@
 
 namespace photorque {
 
-// Light from every point of a flat opening at z = 0 alike, with directions from a table: the far
-// field of a luminaire on the extent of its near field.
+// Light from a flat opening at z = 0 whose points all radiate alike, with directions from a table:
+// the far-field intensity of a luminaire combined with the extent of its near field.
 class PhotometricLamp : public Emitter {
  public:
-  // power > 0; the caller checks.
+  // power > 0; the caller checks this.
   PhotometricLamp(double power_W, const Opening& opening, TabulatedIntensity intensity);
 
   double power_W() const override { return power_W_; }
@@ -31,17 +31,18 @@ class PhotometricLamp : public Emitter {
   double power_W_;
   Opening opening_;
   TabulatedIntensity intensity_;
-  // Averages round the beam at even angles from 0 to π, of tables whose pole is across the beam.
+  // Averages around the beam at equally spaced angles from 0 to π, for tables whose pole is across
+  // the beam.
   std::vector<double> average_;
   double largest_average_ = 0.0;
 };
 
-// The lamp as an aperture that light can be gathered from: a disc whose table is the same all round
-// the beam and shines forwards only; nothing for others.
+// The lamp as an aperture for gathering: a disc whose table is rotationally symmetric about the
+// beam and emits forwards only. Empty for other lamps.
 std::optional<UniformAperture> uniform_aperture(const PhotometricLamp& lamp);
 
-// One line when the angles of a table are so far apart that its flux depends on how it is read
-// between them by more than 0.2 %: with the numbers, and the spacing that would do.
+// One line with the numbers and a sufficient spacing, if the angles of a table are coarse: its flux
+// depends on the interpolation by more than 0.2 %. Empty otherwise.
 std::optional<std::string> coarseness_notice(const PhotometricLamp& lamp);
 
 }  // namespace photorque

@@ -15,16 +15,16 @@ namespace photorque {
 
 // Properties of the lit scene that a source may need.
 struct SourceContext {
-  double scene_radius_m = 1.0;  // of the sphere about the lab origin that holds the scene
-  // Receives notices of legal but implausible values (a beam that no optics can make). May be
-  // empty.
+  double scene_radius_m = 1.0;  // of the sphere about the lab origin that contains the scene
+  // Receives notices of legal but implausible values (such as a beam that optics cannot produce).
+  // May be empty.
   std::function<void(const std::string&)> notice;
-  // Relative paths of files that a source names start here: the folder of the experiment.
+  // Folder of the experiment; relative paths of files that a source names start here.
   std::filesystem::path folder = {};
   // Receives name and content hash of every file read, for the provenance. May be empty.
   std::function<void(const std::string& name, const std::string& hash)> input = {};
-  // The bytes of a file that lies within another, by the name that a source's key gives it. May be
-  // empty.
+  // Returns the bytes of a file that is embedded in another, by the name in the source's key. May
+  // be empty.
   std::function<std::optional<std::string>(const std::string& name)> within = {};
 };
 
@@ -32,15 +32,16 @@ struct SourceContext {
 struct SourceKind {
   std::string name;
   std::string summary;  // one sentence, no full stop
-  // Beams in the lab frame, at least one. Reads all of its keys; throws InputError.
+  // Makes at least one beam in the lab frame. Reads all keys of the kind; throws InputError for
+  // invalid ones.
   std::function<std::vector<Beam>(const Settings&, const SourceContext&)> make;
-  // Keys of a typical source of this kind. The laws that every source obeys are tested on it.
+  // Keys of a typical source of this kind, for tests of the laws that every source must obey.
   SettingsNode::Table example;
-  // The keys that `make` reads, beside `kind`.
+  // Keys that `make` reads, in addition to `kind`.
   std::vector<Key> keys = {};
 };
 
-// Every kind named in sources/CMakeLists.txt, in that order.
+// All kinds listed in sources/CMakeLists.txt, in that order.
 std::vector<SourceKind> all_source_kinds();
 
 }  // namespace photorque

@@ -1,9 +1,9 @@
 // A TEM00 laser beam as rays.
 //
-// The rays are drawn from the Wigner distribution of the beam: position in the waist and transverse
-// slope are independent Gaussians, w0/2 and tan Θ/2 in standard deviation along each axis, with the
-// 1/e² radius w0 of the waist and the 1/e² half angle Θ of the far field. The irradiance at any
-// distance z is then Gaussian with w(z)² = w0² + (z tan Θ)², exactly; at the diffraction limit
+// The rays are drawn from the Wigner distribution of the beam. Position in the waist and transverse
+// slope are independent Gaussians with the standard deviations w0/2 and tan Θ/2 along each axis; w0
+// is the 1/e² radius of the waist, Θ the 1/e² half angle of the far field. The irradiance at any
+// distance z is then exactly Gaussian with w(z)² = w0² + (z tan Θ)². At the diffraction limit
 // tan Θ = λ/(π w0).
 // Source: R. Simon, N. Mukunda, E. C. G. Sudarshan, Phys. Rev. A 29 (1984) 3273; A. E. Siegman,
 // Lasers (1986), section 17.1, for w(z) and the diffraction limit.
@@ -19,7 +19,7 @@
 namespace photorque::kinds::laser {
 namespace {
 
-// Beyond 30 deg a paraxial beam has lost its meaning.
+// The paraxial approximation is not valid beyond 30 deg.
 constexpr Range paraxial{0.0, 30.0 * degree_rad, false, false};
 
 namespace key {
@@ -64,7 +64,7 @@ class GaussianBeam : public Emitter {
   }
 
  private:
-  // Distance from the axis in units of the 1/e² radius, for a uniform fraction.
+  // Distance from the axis in units of the 1/e² radius, from a uniform fraction.
   static double gaussian_radius(uint32_t bits) {
     return std::sqrt(-0.5 * log_positive(remainder_of(bits)));
   }

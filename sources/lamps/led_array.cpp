@@ -1,7 +1,7 @@
 // LEDs of one kind on a plane, all parallel or all aimed at one point.
 //
-// The x and y axes of the plane are the lab's, turned by the shortest rotation from the vertical
-// (up or down, whichever is nearer) to its normal. The LEDs are called name[0], name[1], …
+// The x and y axes of the plane are those of the lab, rotated by the shortest rotation from the
+// vertical (up or down, whichever is nearer) to its normal. The LEDs are called name[0], name[1], …
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -76,8 +76,8 @@ std::vector<Vec3> ring(int64_t count, double radius_m) {
   return all;
 }
 
-// Hexagonal rings about the centre: 1, 7, 19, 37, … points fill whole hexagons. Within a ring the
-// points nearest to the centre come first, so that a ring in part stays balanced.
+// Hexagonal rings about the centre; 1, 7, 19, 37, … points fill whole hexagons. Within a ring the
+// points nearest to the centre come first, so that an incomplete ring stays balanced.
 std::vector<Vec3> hexagonal(int64_t count, double pitch_m) {
   struct Site {
     int ring;
@@ -91,7 +91,7 @@ std::vector<Vec3> hexagonal(int64_t count, double pitch_m) {
   for (int q = -rings; q <= rings; ++q) {
     for (int r = std::max(-rings, -q - rings); r <= std::min(rings, rings - q); ++r) {
       const Vec3 at_m(pitch_m * (q + 0.5 * r), pitch_m * (0.5 * std::sqrt(3.0)) * r, 0.0);
-      // From +x on, as rings are counted; +x with rounding errors comes first.
+      // The azimuth counts from +x; a point on +x with a rounding error stays first.
       constexpr double rounding = 1e-9;
       const double azimuth = std::atan2(at_m.y(), at_m.x());
       sites.push_back({std::max({std::abs(q), std::abs(r), std::abs(q + r)}), q * q + q * r + r * r,
@@ -129,7 +129,8 @@ std::vector<Vec3> read_grid(const Settings& settings) {
   return grid(static_cast<int>(count[0]), static_cast<int>(count[1]), pitch_m);
 }
 
-// Where the LEDs stand in the array's frame (its plane is z = 0), for every layout but `positions`.
+// Positions of the LEDs in the array's frame (its plane is z = 0), for every layout except
+// `positions`.
 std::vector<Vec3> read_layout(const Settings& settings, Layout layout) {
   if (layout == Layout::grid) return read_grid(settings);
   const int64_t count = settings.get(key::count);
@@ -139,8 +140,9 @@ std::vector<Vec3> read_layout(const Settings& settings, Layout layout) {
   return hexagonal(count, settings.get(key::pitch));
 }
 
-// Straight down it is the half turn about x. Near there the axes follow the direction evenly, as
-// they do near straight up: a panel that is a little off does not turn about its own axis.
+// Frame of the panel. For a panel that looks straight down it is the half turn about x. Near there
+// the axes follow the direction continuously, as they do near straight up: a slightly tilted panel
+// does not rotate about its normal.
 RigidTransform panel_frame(const Vec3& normal, const Vec3& centre_m) {
   if (!(normal.z() < 0.0)) return frame_looking_along(normal, centre_m);
   const Quat half_turn(0.0, 1.0, 0.0, 0.0);
@@ -167,10 +169,11 @@ Placement read_placement(const Settings& settings) {
     centre_m = settings.get(source_key::position);
   }
 
-  // A converging array may have both: a plane, and a point at which its LEDs are aimed.
+  // A converging array may have both a direction of its plane and a point at which its LEDs are
+  // aimed.
   std::optional<Vec3> aim_m;
   if (converging) {
-    // Said here, because Settings would take the key `aim` for an `aim_m` without its unit.
+    // Checked here, because Settings would take the key `aim` for an `aim_m` without its unit.
     if (settings.has(source_key::aim) == settings.has(key::focus)) {
       throw settings.error(source_key::aim,
                            settings.has(source_key::aim) ? "focus_m too" : "nothing",
@@ -186,8 +189,8 @@ Placement read_placement(const Settings& settings) {
                           : read_direction(settings, centre_m);
   if (layout != Layout::positions) {
     const RigidTransform lab_from_array = panel_frame(normal, centre_m);
-    // Every layout is its own mirror image, so LEDs are counted as the lab sees them: rows by
-    // rising y, rings counter-clockwise, also where the array looks down.
+    // LEDs are numbered as seen in the lab: rows by rising y, rings counter-clockwise, also if the
+    // array looks down. This is possible because every layout equals its mirror image.
     const double up = lab_from_array.direction(Vec3::UnitY()).y() < 0.0 ? -1.0 : 1.0;
     for (const Vec3& at_m : read_layout(settings, layout)) {
       placement.positions_m.push_back(lab_from_array.point({at_m.x(), up * at_m.y(), at_m.z()}));
@@ -209,8 +212,9 @@ double read_power_of_each(const Settings& settings, size_t count) {
   return settings.get(key::total_power) / static_cast<double>(count);
 }
 
-// Deviations of the LEDs of one panel from their stated values. Normal draws, by Box and Muller,
-// that belong to seed and LED: panels of different layouts are built from the same LEDs.
+// Random deviations of the LEDs of one panel from their stated values. The normal deviates
+// (Box–Muller) depend only on seed and index of the LED: panels of different layouts consist of the
+// same LEDs.
 class Spread {
  public:
   explicit Spread(const Settings& settings)
@@ -221,7 +225,7 @@ class Spread {
   void apply(size_t led, Beam& beam) const {
     if (seed_ == 0) return;
     if (power_ > 0.0) {
-      constexpr double least = 0.01;  // an LED that is on
+      constexpr double least = 0.01;  // an LED always emits
       const double factor = std::max(least, 1.0 + power_ * normal(led, 0));
       beam.emitter = std::make_shared<ScaledEmitter>(beam.emitter, factor);
       if (beam.aperture) beam.aperture->exitance_W_m2 *= factor;

@@ -1,8 +1,8 @@
-// A lamp as a file of rays: IES TM-25, Zemax binary or LightTools text. The file's z axis looks
+// A lamp as a file of rays: IES TM-25, Zemax binary or LightTools text. The file's z axis points
 // along the direction of the lamp.
 //
-// The fluxes of the rays are scaled to the power: their sum is often of another scale than the flux
-// that the file states, which is reported.
+// The fluxes of the rays are scaled to the power. Their sum often differs in scale from the flux
+// stated in the file; the difference is reported.
 #include "sources/lamps/ray_file.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace photorque {
 namespace {
 
-// The bits of four 16-bit numbers in turn, highest first.
+// Interleaves the bits of four 16-bit numbers, highest first.
 uint64_t interleaved(const std::array<uint32_t, 4>& numbers) {
   uint64_t code = 0;
   for (int bit = 15; bit >= 0; --bit) {
@@ -26,8 +26,8 @@ uint64_t interleaved(const std::array<uint32_t, 4>& numbers) {
   return code;
 }
 
-// Where a ray is among the others: direction across the beam, and the point where it crosses the
-// plane z = 0 or, if it runs along it, its origin.
+// Coordinates for sorting a ray: direction across the beam, and the point where it crosses the
+// plane z = 0 (its origin if it is nearly parallel to the plane).
 std::array<double, 4> coordinates(const RaySet::Ray& ray) {
   const double along =
       std::abs(ray.direction.z()) > 0.1 ? ray.origin_m.z() / ray.direction.z() : 0.0;
@@ -93,13 +93,13 @@ void RayLamp::tabulate_intensity(const RaySet& set) {
   for (const RaySet::Ray& ray : set.rays) {
     const Vec3 d = ray.direction.normalized();
     const double sine2 = d.head<2>().squaredNorm();
-    // The form without cancellation near the axis.
+    // This form of 1 − cos θ does not cancel near the axis.
     rises.emplace_back(d.z() > 0.0 ? sine2 / (1.0 + d.z()) : 1.0 - d.z(), ray.flux);
   }
   std::sort(rises.begin(), rises.end());
-  // Steps of 1 % of the rays, and finer in the tail, where directions thin out.
+  // Steps of 1 % of the rays, with fewer rays per step in the tail.
   constexpr size_t steps = 100, fewest_rays = 4;
-  constexpr double narrowest = 1e-30;  // rises of 1e-15 rad: one direction
+  constexpr double narrowest = 1e-30;  // rises of directions 1e-15 rad apart count as equal
   double inner = 0.0, flux = 0.0, largest = 0.0;
   size_t first = 0;
   for (size_t i = 0; i < rises.size(); ++i) {
@@ -116,7 +116,7 @@ void RayLamp::tabulate_intensity(const RaySet& set) {
       const double before = step_.size() > 1 ? edge_rise_[step_.size() - 2] : 0.0;
       step_.back() += flux / (inner - before);
     } else {
-      continue;  // rays of one direction: they go to the next step
+      continue;  // rays of equal direction: add them to the next step
     }
     largest = std::max(largest, step_.back());
     inner = outer;

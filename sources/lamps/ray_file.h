@@ -1,4 +1,4 @@
-// A lamp that is a set of rays.
+// A lamp defined by a set of rays.
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@
 
 namespace photorque {
 
-// Gives the rays of a file with probabilities that go with their flux. They are put in an order
-// along which position and direction change little (Morton's curve in four dimensions), so that
-// well distributed samples meet well distributed rays.
+// Draws the rays of a file with probabilities proportional to their flux. The rays are sorted along
+// Morton's curve in four dimensions, on which position and direction change little. Well
+// distributed samples therefore select well distributed rays.
 //
-// A file of n rays is itself a sample: its noise, about 1/√(rays per bin), is not in the standard
-// errors of a trace.
+// A file of n rays is itself a sample. Its noise, about 1/√(rays per bin), is not contained in the
+// standard errors of a trace.
 class RayLamp : public Emitter {
  public:
-  // Power of all rays together, > 0; the caller checks.
+  // `power_W` of all rays together is > 0; the caller checks this.
   RayLamp(double power_W, const RaySet& set);
 
   double power_W() const override { return power_W_; }
   void emit(const SampleBlock& samples, RayBlock& rays) const override;
-  // Intensity from steps of the angle with equal numbers of rays.
+  // Intensity from steps of the angle that contain equal numbers of rays.
   double relative_intensity(double angle_rad) const override;
 
  private:
@@ -36,9 +36,9 @@ class RayLamp : public Emitter {
 
   double power_W_;
   std::vector<Entry> entries_;
-  std::vector<uint32_t> first_entry_;  // for evenly spaced fractions
-  // Steps of the intensity: their outer edges in 1 − cos θ, rising, and their values over the
-  // largest.
+  std::vector<uint32_t> first_entry_;  // lookup table for equally spaced fractions
+  // Steps of the intensity: their outer edges in 1 − cos θ, rising, and their values relative to
+  // the largest.
   std::vector<double> edge_rise_, step_;
 };
 

@@ -1,4 +1,4 @@
-// The keys that several kinds of source share, and the effect of those read from a file.
+// Keys that several kinds of source share, and functions that read them.
 #pragma once
 
 #include <memory>
@@ -14,32 +14,32 @@
 
 namespace photorque {
 
-// Where a source looks, of any length but zero: either `direction`, a vector, or `aim_m`, a point
-// that is looked at from `position_m`. InputError for both, neither, or a vector of no length.
+// Direction of a source, of any nonzero length: `direction`, a vector, or from `position_m` to the
+// point `aim_m`. Throws InputError for both, for neither, or for zero length.
 Vec3 read_direction(const Settings& settings, const Vec3& position_m);
 
-// The key `direction` alone, of any length but zero.
+// The vector of the key `direction`, of any nonzero length.
 Vec3 read_direction_vector(const Settings& settings);
 
-// A vector from one point to another that `key` names; InputError if they coincide.
+// Vector from one point to another that `key` names. Throws InputError if they coincide.
 Vec3 direction_to(const Settings& settings, std::string_view key, const Vec3& from_m,
                   const Vec3& to_m);
 
-// The directions of a lamp: `profile` with its angles, and a halo.
+// Angular distribution of a lamp from `profile` with its angles, and the halo.
 AngularDistribution read_angular_distribution(const Settings& settings);
 
-// wavelength_nm, and spectral_fwhm_nm with a default.
+// Spectrum from wavelength_nm and spectral_fwhm_nm with a default.
 Spectrum read_line_spectrum(const Settings& settings, double default_fwhm_m);
 
-// Spectrum and irradiance of the Sun and of solar simulators.
+// Spectrum and irradiance [W/m²] of the Sun and of solar simulators.
 struct Sunlight {
   Spectrum spectrum;
   double irradiance_W_m2;
 };
 Sunlight read_sunlight(const Settings& settings);
 
-// One lamp of power `power_W`: the keys above, aperture_diameter_m, and for the etendue optionally
-// die_size_m (side of a square) or die_diameter_m, with lens_index (default 1, a bare die).
+// One lamp of power `power_W`, from the keys above, aperture_diameter_m, and optionally for the
+// etendue die_size_m (side of a square) or die_diameter_m, with lens_index (default 1, a bare die).
 struct Lamp {
   std::shared_ptr<const Emitter> emitter;
   Spectrum spectrum;
@@ -48,17 +48,17 @@ struct Lamp {
 Lamp read_lamp(const Settings& settings, const SourceContext& context, const std::string& name,
                double power_W);
 
-// The bytes of the file that the key `file` names, relative to the context's folder; its hash goes
-// to the context. `name` is how messages call it.
+// Name for messages and bytes of the file that the key `file` names, relative to the context's
+// folder. The context receives its hash.
 struct SourceFile {
   std::string name;
   std::string bytes;
 };
 SourceFile read_source_file(const Settings& settings, const SourceContext& context);
 
-// One lamp at position_m, called `name`, or the same lamp at each of positions_m, called name[0],
-// name[1] …; each looks along `direction` or at aim_m, turned by turn_deg (default 0) about its
-// beam. `aperture` as in Beam.
+// One lamp at position_m called `name`, or equal lamps at each of positions_m called name[0],
+// name[1], … Each points along `direction` or at aim_m and is rotated by turn_deg (default 0) about
+// its beam. `aperture` as in Beam.
 std::vector<Beam> place_lamps(const Settings& settings, const std::string& name,
                               const std::shared_ptr<const Emitter>& lamp, const Spectrum& spectrum,
                               const std::optional<UniformAperture>& aperture = std::nullopt);

@@ -1,10 +1,10 @@
-// A solar simulator: a bundle of limited width and collimation that lights a round field evenly, or
+// A solar simulator: a beam of limited width and collimation that lights a round field uniformly or
 // nearly so.
 //
-// Nonuniformity is that of IEC 60904-9. The irradiance falls from the middle as E(r) = E0 (1 − k
-// r²/R²) with k = 2u/(1 + u), which has that nonuniformity u. Every point of the field sees the
-// same disc of constant radiance, so that the field is sharp at its own plane and blurs in front of
-// it and behind by the half-angle.
+// Nonuniformity is defined as in IEC 60904-9. The irradiance decreases from the centre as E(r) = E0
+// (1 − k r²/R²) with k = 2u/(1 + u), which has the nonuniformity u. Every point of the field sees
+// the same disc of constant radiance. The field is therefore sharp in its plane; in front of it and
+// behind it, it blurs by the half-angle.
 #include <cmath>
 
 #include "core/constants.h"
@@ -31,7 +31,7 @@ class SolarSimulator : public Emitter {
   struct Field {
     double irradiance_W_m2, radius_m, fall;  // fall: k above, ∈ [0, 1)
     double half_angle_rad;
-    double distance_m;  // of the field's plane in front of z = 0
+    double distance_m;  // distance of the field's plane from z = 0
   };
   explicit SolarSimulator(const Field& field) : field_(field) {}
 
@@ -50,7 +50,7 @@ class SolarSimulator : public Emitter {
     }
     fill_directions(rise, samples.bits[3], rays.direction);
     for (int i = 0; i < ray_block; ++i) {
-      // The fraction of the power within r: (s − k s²/2)/(1 − k/2) with s = r²/R².
+      // Inverts the fraction of the power within r, (s − k s²/2)/(1 − k/2) with s = r²/R².
       const double fraction = whole * fraction_of(samples.bits[0][i]);
       const double s = 2.0 * fraction / (1.0 + std::sqrt(1.0 - 2.0 * field_.fall * fraction));
       const double r_m = field_.radius_m * std::sqrt(s);
@@ -74,7 +74,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   const std::string name = settings.get(source_key::name.with_default("solar_simulator"));
   const Vec3 position_m = settings.get(source_key::position);
   const Vec3 direction = read_direction_vector(settings);
-  // The rays start before the sphere that holds the scene.
+  // The rays start outside the sphere that contains the scene.
   constexpr double margin = 1.001;
   const double distance_m = margin * (context.scene_radius_m + position_m.norm());
   const double nonuniformity = settings.get(key::nonuniformity);

@@ -1,10 +1,10 @@
-// The Sun: parallel light from every point of a small disc in the sky, and of its aureole.
+// The Sun: parallel light from every point of a small disc in the sky and of its aureole.
 //
-// A disc without limb darkening has the same radiance L all over: directions are even in solid
-// angle. For each direction the rays fill a disc of radius R normal to THAT direction and centred
-// on the lab origin, so that a sphere of radius R there is lit evenly. The irradiance on a plane
-// normal to the axis is E = ∫ L cos θ dΩ, and the power of all rays ∫ L dΩ · πR² = E πR²/⟨cos θ⟩,
-// with the mean over the light; of the even disc it is cos²(α/2).
+// Without limb darkening the disc has a uniform radiance L: directions are uniform in solid angle.
+// For each direction the rays fill a disc of radius R that is normal to this direction and centred
+// on the lab origin, so that a sphere of radius R is lit evenly. The irradiance on a plane normal
+// to the axis is E = ∫ L cos θ dΩ. The power of all rays is ∫ L dΩ · πR² = E πR²/⟨cos θ⟩ with the
+// mean over the light; for the uniform disc this mean is cos²(α/2).
 #include <algorithm>
 #include <functional>
 #include <limits>
@@ -42,7 +42,7 @@ constexpr NumbersKey limb_darkening(
     "[u1, u2]: radiance 1 − u1 (1 − μ) − u2 (1 − μ)², μ = √(1 − r²) at r radii from the "
     "middle; [0.47, 0.23] in visible light",
     {.usually = "none", .size = 2});
-// Smallest angle of integrated shapes: squares of smaller angles underflow.
+// Minimum angle of integrated shapes: squares of smaller angles underflow.
 constexpr double least_rad = 1e-9;
 constexpr NumberKey sigma("sun_shape_sigma_mrad", {least_rad, pi / 24.0},
                           "σ, the standard deviation of angles along each of two axes");
@@ -56,7 +56,7 @@ constexpr NumbersKey table_radiance("sun_shape_radiance", {0.0, 1e30},
 
 class Sun : public ParallelLight {
  public:
-  // Lights the sphere of radius `radius_m` about (0, 0, radius_m). Without a shape: an even disc.
+  // Lights the sphere of radius `radius_m` about (0, 0, radius_m). Without `shape`: a uniform disc.
   Sun(double irradiance_W_m2, double angular_radius_rad, double radius_m,
       std::optional<SunShape> shape)
       : ParallelLight(radius_m), angular_radius_rad_(angular_radius_rad), shape_(std::move(shape)) {
@@ -95,7 +95,7 @@ class Sun : public ParallelLight {
   }
 
  private:
-  double angular_radius_rad_;  // of the even disc
+  double angular_radius_rad_;  // of the uniform disc
   std::optional<SunShape> shape_;
   double edge_rise_ = 0.0;
   double power_W_ = 0.0;
@@ -105,7 +105,7 @@ std::optional<SunShape> read_limb_darkening(const Settings& settings, double ang
   if (!settings.has(key::limb_darkening)) return std::nullopt;
   const std::vector<double> u = settings.get(key::limb_darkening);
   const bool two = u.size() == 2;
-  // The edge shines with 1 − u₁ − u₂, the slope at the middle is −(u₁ + 2 u₂ (1 − μ)) ≤ 0.
+  // The radiance at the edge is 1 − u₁ − u₂; the slope at the centre is −(u₁ + 2 u₂ (1 − μ)) ≤ 0.
   if (!two || u[0] < 0.0 || u[0] + u[1] > 1.0 || u[0] + 2.0 * u[1] < 0.0) {
     throw settings.error(key::limb_darkening,
                          two ? "coefficients of a disc that does not darken towards its edge"
@@ -160,7 +160,7 @@ std::optional<SunShape> read_shape(const Settings& settings, double angular_radi
 }
 
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
-  // The sphere that holds the scene may only just hold it.
+  // A margin, because the sphere of scene_radius_m may touch the scene.
   constexpr double margin = 1.001;
   const std::string name = settings.get(source_key::name.with_default("sun"));
   const Vec3 direction = read_direction_vector(settings);

@@ -25,7 +25,7 @@ class ValueLines {
     return std::string(trimmed(lines_[next_++]));
   }
 
-  // With a decimal comma or point.
+  // A number with a decimal comma or point.
   double number(const char* what) {
     std::string line = text(what);
     const std::string found = line;
@@ -34,7 +34,7 @@ class ValueLines {
     throw InputError(where(), what, in_quotes(found), "a number");
   }
 
-  // A number that matters little: nothing counts as zero.
+  // An unimportant number; an empty line counts as zero.
   double number_or_zero(const char* what) {
     if (next_ < lines_.size() && trimmed(lines_[next_]).empty()) {
       ++next_;
@@ -80,7 +80,7 @@ Lamps read_lamps(ValueLines& lines) {
   return lamps;
 }
 
-// The C planes that a file of this symmetry stores: a first one and how many.
+// The C planes that a file of this symmetry stores: the first one and their number.
 struct StoredRange {
   size_t first = 0, count = 1;
   PlaneSymmetry symmetry = PlaneSymmetry::none;
@@ -116,7 +116,8 @@ Opening read_opening(ValueLines& lines) {
   return opening;
 }
 
-// The `planes` in the file with their `angles`; intensities are multiplied by `factor`.
+// Reads the `planes` stored in the file with their `angles`; intensities are multiplied by
+// `factor`.
 StoredPlanes read_planes(ValueLines& lines, const StoredRange& range, size_t planes, size_t angles,
                          double factor) {
   const std::vector<double> all_c_deg = lines.numbers("C angle", planes);
@@ -167,14 +168,14 @@ PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name)
   for (int i = 0; i < 10; ++i) lines.number_or_zero("direct ratio");
   file.input_power_W = lamps.input_power_W;
   if (!lamps.absolute && lamps.flux_lm > 0.0) file.stated_flux_lm = lamps.flux_lm;
-  // A file without lamps still has a shape.
+  // A file without lamps still defines the shape.
   const double factor = conversion * (lamps.flux_lm > 0.0 ? lamps.flux_lm / 1000.0 : 1.0);
   if (!(factor > 0.0)) {
     throw InputError(lines.where(), "conversion factor", shortest(conversion), "a number > 0");
   }
 
   const StoredRange range = stored_range(symmetry, planes);
-  // Half of the planes from C0 to C180, or a quarter of them, end on a plane.
+  // With these symmetries the stored half or quarter of the planes must end on a plane.
   const size_t parts = symmetry == 2 ? 2 : 4;
   if (symmetry > 1 && planes % parts != 0) {
     throw InputError(lines.where(), "number of C planes", std::to_string(planes),
@@ -188,7 +189,7 @@ PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name)
 }
 
 PhotometricFile read_photometric(const std::string& bytes, const std::string& name) {
-  const size_t first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");  // after a byte order mark
+  const size_t first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");  // skips a byte order mark
   if (first != std::string::npos && bytes[first] == '<') return read_tm33(bytes, name);
   return looks_like_ies(lines_of(bytes)) ? read_ies(bytes, name) : read_eulumdat(bytes, name);
 }

@@ -10,7 +10,7 @@
 namespace photorque {
 namespace {
 
-// Azimuths that show the same plane, in [0, 360).
+// Azimuths in [0, 360) of planes equal to this one by symmetry.
 std::vector<double> images_of(double azimuth_deg, PlaneSymmetry symmetry) {
   std::vector<double> images = {azimuth_deg};
   const bool left_right = symmetry == PlaneSymmetry::across_0_180;
@@ -26,7 +26,7 @@ std::vector<double> images_of(double azimuth_deg, PlaneSymmetry symmetry) {
   return images;
 }
 
-// Turns of angles far beyond a turn would be rounding alone.
+// Limits azimuths to two turns: far larger angles would consist of rounding errors.
 void require_few_turns(const std::vector<double>& azimuth_deg, const InputLocation& where) {
   constexpr double most_deg = 720.0;
   for (const double angle_deg : azimuth_deg) {
@@ -37,7 +37,7 @@ void require_few_turns(const std::vector<double>& azimuth_deg, const InputLocati
   }
 }
 
-// Types A and B: angles from 0 stand for both sides.
+// Types A and B: adds the mirror images of angles that start at 0.
 void mirror(std::vector<double>& angles_deg, std::vector<size_t>& from) {
   for (size_t i = 0; i < angles_deg.size(); ++i) from.push_back(i);
   if (angles_deg.front() != 0.0 || angles_deg.size() < 2) return;
@@ -70,7 +70,7 @@ IntensityTable unfold(const StoredPlanes& stored, PlaneSymmetry symmetry,
     table.intensity = stored.intensity;
     return table;
   }
-  std::map<double, size_t> plane_at;  // the first of planes at one azimuth counts
+  std::map<double, size_t> plane_at;  // of several planes at one azimuth the first counts
   for (size_t j = 0; j < stored.azimuth_deg.size(); ++j) {
     for (const double azimuth_deg : images_of(stored.azimuth_deg[j], symmetry)) {
       const auto next = plane_at.lower_bound(azimuth_deg - 1e-6);
@@ -183,7 +183,7 @@ void require_light(PhotometricFile& file, const InputLocation& where) {
     least = std::min(least, value);
     value = 0.0;
   }
-  // Squares and sums of such numbers neither overflow nor vanish.
+  // Within these limits squares and sums neither overflow nor underflow.
   constexpr double faintest_cd = 1e-60, brightest_cd = 1e60;
   if (!(largest > 0.0)) {
     throw InputError(where, "intensities", "none above zero", "a source that shines");

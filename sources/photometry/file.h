@@ -1,7 +1,7 @@
 // Files that describe a luminaire by its intensity: IES LM-63, IES TM-33 and EULUMDAT.
 //
-// Candela mean little to this program: at 730 nm the luminous efficiency is 5e-4, and a file seldom
-// says of which spectrum it speaks. Only the shape of the intensity is used; radiant power comes
+// Luminous units are of little use for this program: at 730 nm the luminous efficiency is 5e-4, and
+// a file seldom states its spectrum. Only the shape of the intensity is used; radiant power comes
 // from the experiment.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace photorque {
 
-// The luminous opening, in the plane across the beam.
+// Luminous opening, in the plane across the beam.
 struct Opening {
   enum class Shape { point, rectangle, ellipse };
   Shape shape = Shape::point;
@@ -27,41 +27,42 @@ struct Opening {
 struct PhotometricFile {
   std::string format;  // "IESNA:LM-63-2002", "LM-63-1986", "EULUMDAT", "IESTM33-22"
   std::vector<std::pair<std::string, std::string>> labels;  // keyword and text, in order
-  // [cd], in TM-33 also [W/sr] or [µmol/(s sr)]; all factors applied
+  // [cd], in TM-33 also [W/sr] or [µmol/(s sr)]; all factors are applied
   IntensityTable table;
-  std::optional<double> stated_flux_lm;  // nothing: absolute photometry
+  std::optional<double> stated_flux_lm;  // empty: absolute photometry
   double input_power_W = 0.0;            // electrical; 0: not stated
   Opening opening;
   std::vector<std::string> notices;  // parts that were ignored or repaired, one line each
 };
 
-// LM-63 of 1986, 1991, 1995, 2002 and 2019. Types A, B and C; symmetric tables are unfolded to all
-// planes. TILT factors say how a lamp dims in a tilted luminaire, not how it shines: they are
-// checked and passed over with a notice. `name` is how messages call the file. InputError with the
-// line of the error.
+// Reads LM-63 of 1986, 1991, 1995, 2002 and 2019, types A, B and C; symmetric tables are unfolded
+// to all planes. TILT factors describe the dimming of a lamp in a tilted luminaire; they are
+// checked and ignored with a notice. Messages call the file `name`. Throws InputError with the line
+// of the error.
 PhotometricFile read_ies(const std::string& bytes, const std::string& name);
 
-// Whether these are the lines of such a file, by its first line or by a line "TILT=".
+// Whether the lines are LM-63, judged by the first line or by a line "TILT=".
 bool looks_like_ies(const std::vector<std::string_view>& lines);
 
-// EULUMDAT (.ldt); symmetries 0 to 4 are unfolded, cd/klm become cd with the stated lamp flux.
+// Reads EULUMDAT (.ldt). Symmetries 0 to 4 are unfolded; cd/klm is converted to cd with the stated
+// lamp flux.
 PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name);
 
-// IES TM-33 (ATLA S001): radiant, photon or luminous intensity of one emitter on a grid of
-// directions, types A, B and C; the first of these that the file has. TiltAngles are passed over
-// with a notice. InputError with the line of the error.
+// Reads IES TM-33 (ATLA S001): radiant, photon or luminous intensity (the first of these in the
+// file) of one emitter on a grid of directions, types A, B and C. TiltAngles are ignored with a
+// notice. Throws InputError with the line of the error.
 PhotometricFile read_tm33(const std::string& bytes, const std::string& name);
 
-// Whichever of them the text is.
+// Detects the format from the text and reads it.
 PhotometricFile read_photometric(const std::string& bytes, const std::string& name);
 
-// Shared by the readers: unfolding of symmetric tables, and checks of every table.
+// Functions shared by the readers: unfolding of symmetric tables, and checks of every table.
 
-// Which planes a file stands for beside those that it stores.
+// Symmetry by which unstored planes follow from stored ones.
 enum class PlaneSymmetry {
   none,
-  across_0_180,   // left equals right of the plane through 0 and 180 degrees
-  across_90_270,  // of the plane through 90 and 270 degrees
+  across_0_180,   // mirror images about the plane through 0 and 180 degrees
+  across_90_270,  // mirror images about the plane through 90 and 270 degrees
   both,
 };
 
@@ -75,34 +76,35 @@ struct StoredPlanes {
   std::vector<double> intensity;
 };
 
-// All planes round the beam, from those stored and their mirror images; a single plane stays alone
-// and stands for all. Throws InputError at `where` when planes leave more than half a turn out.
+// All planes around the beam, from those stored and their mirror images. A single plane stays
+// single and is valid at every azimuth. Throws InputError at `where` if a gap between planes
+// exceeds half a turn.
 IntensityTable unfold(const StoredPlanes& stored, PlaneSymmetry symmetry,
                       const InputLocation& where);
 
-// Types A (pole `vertical`) and B (`horizontal`): latitude and longitude about an axis across the
-// beam, which is H = V = 0. H counts clockwise seen from above (LM-63-2002, definitions). From the
-// beam, V runs towards the emitter's x and H towards its y: upwards and to the right for a type A
-// that looks horizontally. Angles that start at 0 stand for both sides. Throws InputError at
-// `where` for angles beyond a sphere's.
+// Tables of types A (pole `vertical`) and B (`horizontal`): latitude and longitude about an axis
+// across the beam, which is at H = V = 0. H counts clockwise seen from above (LM-63-2002,
+// definitions). From the beam, V increases towards the emitter's x and H towards its y: upwards and
+// to the right for a horizontal beam of type A. Angles that start at 0 are mirrored to both sides.
+// Throws InputError at `where` for angles outside the sphere's range.
 IntensityTable sideways_table(Pole pole, const StoredPlanes& stored, const InputLocation& where);
 
 // Throws InputError unless ascending polar angles lie in 0 to 180 degrees.
 void require_goniometer_range(const std::vector<double>& polar_deg, const InputLocation& where);
 
-// Throws InputError unless angles ascend strictly.
+// Throws InputError unless the angles ascend strictly.
 void require_ascending(const std::vector<double>& angles_deg, const std::string& key,
                        const InputLocation& where);
 
 // Throws InputError for an opening larger than largest_extent_m.
 void require_opening(const Opening& opening, const InputLocation& where);
 
-// A notice where planes stand far apart round the beam, which in between are joined by straight
-// lines: more than an eighth of a turn, and far more than elsewhere.
+// Adds a notice if planes are far apart, since values between them are interpolated linearly: more
+// than an eighth of a turn, and far more than elsewhere.
 void note_gaps(PhotometricFile& file);
 
-// Negative intensities, the noise of goniometers, become zero with a notice. Throws InputError when
-// nothing shines, or nothing that can be computed with.
+// Sets negative intensities (noise of goniometers) to zero with a notice. Throws InputError if all
+// intensities are zero or if their magnitude cannot be computed with.
 void require_light(PhotometricFile& file, const InputLocation& where);
 
 }  // namespace photorque

@@ -1,5 +1,5 @@
-// LightTools ray data file in text: keywords up to lt_startofdata, then one ray a line,
-// x y z  l m n  flux [wavelength].
+// LightTools ray data file in text: keywords up to lt_startofdata, then one ray per line, x y z  l
+// m n  flux [wavelength].
 #include <algorithm>
 #include <optional>
 #include <set>
@@ -13,8 +13,8 @@ namespace {
 constexpr double nanometre_m = 1e-9;
 constexpr std::string_view blanks = " \t\r\v\f\x1a";
 
-// Numbers stand apart by blanks, or by commas alone: among blanks a comma is a decimal one, which
-// no number has.
+// Numbers are separated by blanks, or by commas without blanks. Commas that follow a number before
+// a blank are removed; a decimal comma is an error.
 std::vector<std::string_view> numbers_of(std::string_view line) {
   std::vector<std::string_view> words = words_of(line, blanks);
   if (words.size() == 1) return words_of(line, ",");

@@ -20,17 +20,17 @@ bool begins_with_word(std::string_view line, std::string_view word) {
          });
 }
 
-// "TILT=", in small letters as well, with blanks before the sign; not "Tilting bracket".
+// A line "TILT=" in any case, with optional blanks before the sign. "Tilting bracket" is not one.
 bool is_tilt_line(std::string_view line) {
   return begins_with_word(line, "TILT") && trimmed(line.substr(4)).starts_with('=');
 }
 
-// "IESNA:LM-63-2002", "IES:LM-63-2019"; not the name of a company.
+// "IESNA:LM-63-2002" or "IES:LM-63-2019", but not a company name that begins with these letters.
 bool begins_as_ies(std::string_view line) {
   return begins_with_word(line, "IESNA") || begins_with_word(line, "IES:");
 }
 
-// The numbers after the TILT line: separated by blanks, commas and line ends in any mixture.
+// The numbers after the TILT line, separated by any mixture of blanks, commas and line ends.
 class NumberStream {
  public:
   NumberStream(const std::vector<std::string_view>& lines, size_t line, const std::string& file)
@@ -56,7 +56,7 @@ class NumberStream {
     return require_count(value, where(), what, low, high);
   }
 
-  // Every number takes two bytes of the file, so that no count makes this allocate more than that.
+  // A count cannot cause a large allocation: reading stops with an error at the end of the file.
   std::vector<double> numbers(const char* what, size_t count) {
     std::vector<double> values;
     for (size_t i = 0; i < count; ++i) values.push_back(next(what));
@@ -92,7 +92,8 @@ class NumberStream {
   const std::string& file_;
 };
 
-// The lines above TILT: a version, and keywords or (1986) free text. Returns the TILT line's index.
+// Reads the lines above TILT: a version, and keywords or (1986) free text. Returns the index of the
+// TILT line.
 size_t read_labels(const std::vector<std::string_view>& lines, const std::string& name,
                    PhotometricFile& file) {
   file.format = "LM-63-1986";
@@ -130,7 +131,7 @@ void read_tilt(std::string_view line, NumberStream& stream, PhotometricFile& fil
                          "\" (a lamp that dims when tilted) is not applied");
 }
 
-// Table 1 of LM-63-2002; of 1995 and before, where a negative width alone means a disc.
+// Opening by Table 1 of LM-63-2002; before 2002 only a negative width means a disc.
 Opening read_opening(double width_m, double length_m, double height_m, PhotometricFile& file) {
   if (height_m != 0.0) {
     file.notices.emplace_back(
@@ -176,7 +177,7 @@ IesHeader read_header(NumberStream& stream, PhotometricFile& file) {
   const InputLocation ballast_at = stream.where();
   const double future = stream.next("ballast-lamp factor");
   file.input_power_W = stream.next("input watts");
-  // Since 2019 the second factor is the kind of test instead.
+  // In the version of 2019 the second factor is a code for the kind of test instead.
   const bool is_factor = file.format.find("2019") == std::string::npos && future > 0.0;
   header.factor = multiplier * ballast * (is_factor ? future : 1.0);
   if (!(header.factor > 0.0)) {
@@ -189,7 +190,7 @@ IesHeader read_header(NumberStream& stream, PhotometricFile& file) {
   return header;
 }
 
-// A count that is too low leaves numbers over, and has shifted all those before them.
+// If a count is too low, numbers remain at the end, and all values before are assigned wrongly.
 void require_end(NumberStream& stream, const IesHeader& header) {
   const std::optional<double> left = stream.left_over();
   if (!left) return;

@@ -1,4 +1,5 @@
-// Rays as measured at a lamp or exported by an optics program, and the files that hold them.
+// Rays that were measured at a lamp or exported by an optics program, and the files that contain
+// them.
 #pragma once
 
 #include <optional>
@@ -13,8 +14,8 @@ namespace photorque {
 struct RaySet {
   struct Ray {
     Vec3 origin_m;
-    Vec3 direction;             // of unit norm to 1e-3, as the file has it
-    double flux = 0.0;          // ≥ 0, in `flux_unit` but of any scale, see the stated flux
+    Vec3 direction;             // of unit norm to 1e-3, as in the file
+    double flux = 0.0;          // ≥ 0, in `flux_unit` up to a common factor, see the stated flux
     double wavelength_m = 0.0;  // 0: not stated for this ray
   };
   enum class FluxUnit { watt, lumen };
@@ -24,17 +25,17 @@ struct RaySet {
   FluxUnit flux_unit = FluxUnit::watt;
   std::optional<double> stated_radiant_flux_W;
   std::optional<double> stated_luminous_flux_lm;
-  std::optional<double> wavelength_m;  // of all rays, where the file states one
+  std::optional<double> wavelength_m;  // common to all rays, if the file states one
   std::vector<Ray> rays;               // at least one; their flux sums to more than zero
 
-  double ray_flux() const;  // the sum, in the unit and scale of the rays
+  double ray_flux() const;  // sum over the rays, in their unit and scale
 };
 
-// Each reader takes the bytes of a file and how messages call it. Sizes are checked against the
-// bytes before anything is allocated. InputError for a file that is of another type, truncated, or
-// holds a ray without direction, with a negative flux or with a number that is not finite.
+// Each reader takes the bytes of a file and its name for messages. Sizes are checked against the
+// number of bytes before memory is allocated. Throws InputError if the file has another type or is
+// truncated, or if a ray has no direction, a negative flux or a non-finite number.
 
-// IES TM-25-13 (.tm25ray). Polarisation and colour of single rays are passed over.
+// IES TM-25-13 (.tm25ray). Polarisation and colour of single rays are ignored.
 RaySet read_tm25(const std::string& bytes, const std::string& name);
 
 // Zemax binary source file (.dat, .sdf), flux only or with wavelengths.
@@ -43,14 +44,14 @@ RaySet read_zemax_rays(const std::string& bytes, const std::string& name);
 // LightTools ray data file in text (.ray).
 RaySet read_lighttools_rays(const std::string& bytes, const std::string& name);
 
-// Whichever of them the bytes are.
+// Detects the format from the bytes and reads them.
 RaySet read_rays(const std::string& bytes, const std::string& name);
 
-// The bytes of a TM-25-13 file. Numbers are rounded to single precision, as the format has them;
-// the result of read_tm25() comes back unchanged.
+// Bytes of a TM-25-13 file. Numbers are rounded to single precision, as the format requires; the
+// result of read_tm25() is reproduced exactly.
 std::string write_tm25(const RaySet& set);
 
-// Checks that the readers share:
+// Checks shared by the readers.
 
 // Throws InputError unless ray `index` has finite numbers, a start within largest_extent_m, a
 // direction of length one (to 1e-3) and no negative flux.
@@ -59,7 +60,7 @@ void require_sound(const RaySet::Ray& ray, size_t index, const InputLocation& wh
 // Throws InputError for a set without rays or without flux.
 void require_flux(const RaySet& set, const InputLocation& where);
 
-// Throws InputError for more rays than the file has room for, or than fit in memory kept for them.
+// Throws InputError for more rays than the file has room for, or than fit in memory.
 void require_affordable(uint64_t rays, uint64_t room_for, const InputLocation& where);
 
 }  // namespace photorque

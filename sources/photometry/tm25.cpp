@@ -18,7 +18,7 @@ constexpr size_t texts = 9, text_characters = 1000;  // UTF-32
 constexpr size_t column_name_bytes = 512;            // 128 characters of UTF-32
 constexpr float absent = std::numeric_limits<float>::quiet_NaN();
 
-// Which columns a ray has, in the order of the file.
+// Columns of a ray, in the order of the file.
 enum Column : size_t {
   position,
   direction,
@@ -30,7 +30,8 @@ enum Column : size_t {
   spectrum,
   column_kinds
 };
-// Number of floats per column; Stokes' parameters have three and their reference direction.
+// Number of floats per column: Stokes' parameters have three, their reference direction has three
+// more.
 constexpr std::array<size_t, column_kinds> column_floats = {3, 3, 1, 1, 1, 6, 2, 1};
 
 struct Tm25Header {
@@ -69,7 +70,7 @@ Tm25Header read_tm25_header(LittleEndianReader& in, RaySet& set) {
   const float wavelength_nm = in.float32("wavelength");
   in.skip(8, "range of wavelengths");
   if (spectrum_kind == 1 && stated(wavelength_nm)) {
-    // Micrometres in a field of nanometres, say.
+    // For example micrometres in a field of nanometres.
     if (!(wavelength_nm >= 10.0F && wavelength_nm <= 1e6F)) {
       throw InputError(in.where(), "wavelength", shortest(wavelength_nm) + " nm",
                        "10 nm to 1000000 nm");
@@ -98,7 +99,7 @@ Tm25Header read_tm25_header(LittleEndianReader& in, RaySet& set) {
   return header;
 }
 
-// ASCII of a UTF-32 text; other characters become question marks.
+// Converts UTF-32 to ASCII; other characters become question marks.
 std::string ascii_of(std::string_view utf32) {
   std::string text;
   for (size_t i = 0; i + 4 <= utf32.size(); i += 4) {
@@ -117,7 +118,7 @@ void skip_spectra(LittleEndianReader& in, int32_t spectra) {
     in.skip(8 * points, "spectrum");
     bytes += 4 + 8 * points;
   }
-  // The block is filled up to a multiple of 32 bytes.
+  // The block is padded to a multiple of 32 bytes.
   in.skip((32 - bytes % 32) % 32, "filling after the spectra");
 }
 

@@ -34,7 +34,8 @@ class XmlText {
   std::vector<std::ptrdiff_t> line_ends_;  // rising
 };
 
-// Some makers' schemas have blanks where the standard's text was broken: "Symm _ Bi _ 0".
+// Some manufacturers' schemas contain blanks at line breaks of the standard's text: "Symm _ Bi _
+// 0".
 std::string without_blanks(std::string text) {
   std::erase_if(text, [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; });
   return text;
@@ -58,7 +59,7 @@ double child_number_or(const XmlText& text, const pugi::xml_node& node, const ch
   return child ? number_of(text, child, key, child.child_value()) : other;
 }
 
-// The kinds of intensity in the standard, the one nearest to watts first.
+// Kinds of intensity in the standard, most similar to watts first.
 struct IntensityKind {
   const char *data, *intensity, *words;
 };
@@ -272,7 +273,7 @@ PhotometricFile read_tm33(const std::string& bytes, const std::string& name) {
     const PlaneSymmetry symmetry = stated_symmetry(text, found.intensity, stored);
     file.table = unfold(stored, symmetry, where);
   } else {
-    // Angles from 0 stand for both sides, as in LM-63.
+    // Angles that start at 0 are mirrored to both sides, as in LM-63.
     const pugi::xml_node symmetry = found.intensity.child("Symm");
     const bool one_sided = stored.polar_deg.front() == 0.0 || stored.azimuth_deg.front() == 0.0;
     if (one_sided && without_blanks(symmetry.child_value()) == "Symm_None") {

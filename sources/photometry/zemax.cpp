@@ -1,4 +1,4 @@
-// Zemax OpticStudio binary source file: a header of 208 bytes and 7 or 8 numbers for each ray.
+// Zemax OpticStudio binary source file: a header of 208 bytes and 7 or 8 numbers per ray.
 // Source: Zemax OpticStudio User Manual, "Source File".
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 constexpr int32_t magic = 1010;
 constexpr double micrometre = 1e-6;
 
-// Dimension units 0 to 4.
+// Metres per unit for the dimension units 0 to 4.
 constexpr std::array<double, 5> unit_m = {1.0, 0.0254, 0.01, 0.3048, 0.001};
 
 struct ZemaxHeader {

@@ -13,11 +13,11 @@
 namespace photorque {
 namespace {
 
-// Profiles without an edge are cut where the intensity is exp(−this) of the maximum: the flux
-// beyond is below the resolution of a 32-bit random number by a factor of 1e7.
+// Profiles without an edge are cut where the intensity is exp(−40) of the maximum: the flux beyond
+// is below the resolution of a 32-bit random number by a factor of 1e7.
 constexpr double negligible_exponent = 40.0;
 
-// ln cos θ with its relative precision near the axis, where cos θ has lost it.
+// ln cos θ with full relative precision near the axis, where cos θ rounds to 1.
 double log_cosine(double angle_rad) {
   if (angle_rad > 0.25 * pi) return std::log(std::cos(angle_rad));
   const double sine = std::sin(angle_rad);
@@ -28,7 +28,7 @@ double log_cosine(double angle_rad) {
 
 AngularProfile gaussian_profile(double fwhm_rad) {
   const AngularProfile same = super_gaussian_profile(fwhm_rad, 2.0);
-  return {[fwhm_rad](double angle_rad) {  // a product, which costs less than a power
+  return {[fwhm_rad](double angle_rad) {  // a product, which is faster than a power
             const double x = 2.0 * angle_rad / fwhm_rad;
             return std::exp2(-x * x);
           },
@@ -77,8 +77,8 @@ AngularDistribution::AngularDistribution(AngularProfile core, std::optional<Halo
   add(std::move(core), 1.0 - halo_fraction_);
   if (halo_fraction_ > 0.0) add(std::move(halo->profile), halo_fraction_);
 
-  // Profiles rise or fall steadily, so that the maximum is on the axis or at an edge; the steps in
-  // between catch a sum of both.
+  // Each profile is monotone, so its maximum is on the axis or at an edge. The steps in between are
+  // for the maximum of a sum of both profiles.
   constexpr int steps = 256;
   for (const Part& part : parts_) {
     for (int i = 0; i <= steps; ++i) {
@@ -118,7 +118,7 @@ void AngularDistribution::rises(const std::array<uint32_t, ray_block>& bits,
   for (int i = 0; i < ray_block; ++i) {
     const uint32_t outside = ~bits[i];
     const bool in_halo = outside < halo;
-    // Each part stretched to the whole interval again; the bounds only repair rounding.
+    // Maps each part to the whole interval (0, 1); the bounds only correct rounding.
     const float part = single_of(in_halo ? outside : outside - halo) + 0.5f;
     float fraction = part * (in_halo ? per_halo : per_core);
     fraction = fraction < smallest_fraction ? smallest_fraction : fraction;

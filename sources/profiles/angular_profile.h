@@ -1,5 +1,5 @@
-// Radiant intensity over the angle from the axis of a beam: the profiles of lamps, and
-// directions sampled from one of them or from a core with a halo.
+// Radiant intensity over the angle from the axis of a beam: profiles of lamps, and sampling of
+// directions from one profile or from a core with a halo.
 #pragma once
 
 #include <array>
@@ -12,10 +12,9 @@
 
 namespace photorque {
 
-// Radiant intensity I(θ) [W/sr up to a factor] about an axis. Smooth on [0, end_rad], nothing is
-// emitted beyond.
+// Radiant intensity I(θ) [W/sr up to a factor] about an axis. Smooth on [0, end_rad], zero beyond.
 struct AngularProfile {
-  std::function<double(double angle_rad)> intensity;  // > 0 inside, finite; of any scale
+  std::function<double(double angle_rad)> intensity;  // > 0 inside, finite; arbitrary scale
   double end_rad = 0.0;                               // ∈ (0, π/2]
 
   double operator()(double angle_rad) const {
@@ -32,7 +31,7 @@ AngularProfile gaussian_profile(double fwhm_rad);
 // P(2/order, ln 2 · (2θ/fwhm)^order).
 AngularProfile super_gaussian_profile(double fwhm_rad, double order);
 
-// Measure in which the flux of a pillbox is uniform up to its half-angle θ0 ∈ (0, π/2]; u is
+// The measure in which the flux of a pillbox is uniform up to its half-angle θ0 ∈ (0, π/2]; u is
 // uniform in (0, 1):
 enum class PillboxMeasure {
   angle,        // the disc of angles: θ = θ0 √u, I ∝ θ/sin θ (the pillbox of SolTrace)
@@ -44,15 +43,16 @@ AngularProfile pillbox_profile(double half_angle_rad, PillboxMeasure measure);
 // I = cos^exponent θ, exponent ∈ [0, 1e9]; 0 is isotropic, 1 is Lambert's law.
 AngularProfile cosine_power_profile(double exponent);
 
-// The directions of a lamp: one profile, or a core and a halo about it.
+// Directions of a lamp: one profile, or a core with a halo.
 
-// A halo of stray light: this fraction of all flux, in [0, 1), with a separate profile.
+// A halo of stray light: a fraction of the total flux, in [0, 1), with a separate profile.
 struct Halo {
   AngularProfile profile;
   double fraction = 0.0;
 };
 
-// Immutable. Directions are sampled with equal weight, to 1e-6 of the flux within any cone.
+// Immutable. Directions are sampled with equal weight; the flux within any cone has an error of
+// 1e-6.
 class AngularDistribution {
  public:
   explicit AngularDistribution(AngularProfile core, std::optional<Halo> halo = std::nullopt);
@@ -60,14 +60,15 @@ class AngularDistribution {
   // Radiant intensity over its maximum, in [0, 1].
   double relative_intensity(double angle_rad) const;
 
-  // Where a profile ends, rising; the last is where all light ends.
+  // Angles at which profiles end, rising; the last is the end of all light.
   std::vector<double> edges_rad() const;
 
-  // Flux over the largest intensity [sr]: the solid angle that a beam as bright would fill evenly.
+  // Flux divided by the largest intensity [sr]: the solid angle that a uniform beam of this
+  // intensity would fill.
   double effective_solid_angle_sr() const { return 1.0 / brightest_; }
 
-  // The cosine's fall from the axis, 1 − cos θ, for each 32-bit fraction; rises with the fraction
-  // within the core and, for the last `halo.fraction` of fractions, within the halo.
+  // Computes 1 − cos θ for each 32-bit fraction. It rises with the fraction within the core and,
+  // for the last `halo.fraction` of the fractions, within the halo.
   void rises(const std::array<uint32_t, ray_block>& bits, std::array<float, ray_block>& rise) const;
 
  private:
@@ -75,7 +76,7 @@ class AngularDistribution {
 
   struct Part {
     AngularProfile profile;
-    double intensity_factor;  // makes the flux of the profile its fraction of the whole
+    double intensity_factor;  // normalises the profile's flux to its fraction of the total
   };
   std::vector<Part> parts_;
   double halo_fraction_ = 0.0;

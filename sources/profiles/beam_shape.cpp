@@ -14,7 +14,7 @@ namespace {
 
 constexpr double narrowest_rad = 1e-9;
 
-// Angles from 0 to π, ever closer towards 0: every beam has several of them across its width.
+// Angles from 0 to π in a geometric sequence: every beam has several of them across its width.
 std::vector<double> angle_ladder(int steps_per_octave) {
   std::vector<double> ladder = {pi};
   const double ratio = std::exp2(-1.0 / steps_per_octave);
@@ -33,7 +33,7 @@ EncircledFlux::EncircledFlux(const Emitter& emitter) : emitter_(emitter) {
     rough_total += flux_between(ladder[i], ladder[i + 1]);
   }
   constexpr double tolerance = 1e-11;
-  constexpr int deepest = 40;  // an edge is then known to 1e-12 of its angle
+  constexpr int deepest = 40;  // resolves an edge to 1e-12 of its angle
   for (size_t i = 0; i + 1 < ladder.size(); ++i) {
     refine(ladder[i], ladder[i + 1], tolerance * rough_total, deepest);
   }
@@ -54,7 +54,8 @@ double EncircledFlux::flux_between(double low_rad, double high_rad) const {
 }
 
 void EncircledFlux::refine(double low_rad, double high_rad, double tolerance, int depth) {
-  // A step of the intensity at any place makes these two differ: their nodes share no gap.
+  // Compares two quadratures whose nodes leave no common gap, so that they differ for a step of the
+  // intensity at any angle.
   const double middle_rad = 0.5 * (low_rad + high_rad);
   const auto density = [this](double angle_rad) { return flux_density(angle_rad); };
   const double flux = flux_between(low_rad, high_rad);

@@ -1,4 +1,4 @@
-// Beam angles: widths and encircled flux of any emitter, from its intensity alone.
+// Beam angles: widths and encircled flux of any emitter, from its relative intensity.
 #pragma once
 
 #include <span>
@@ -10,20 +10,20 @@
 
 namespace photorque {
 
-// The flux within cones about the axis, by adaptive quadrature of the relative intensity. Resolves
-// beams from 1e-8 rad to the whole sphere, edges and cores with halos; anything narrower counts as
+// Flux within cones about the axis, by adaptive quadrature of the relative intensity. Resolves
+// beams from 1e-8 rad to the whole sphere, edges, and cores with halos; narrower beams count as
 // collimated. Error below 1e-8 of the flux.
 class EncircledFlux {
  public:
   explicit EncircledFlux(const Emitter& emitter);
 
-  // The fraction of the flux within a half-angle ∈ [0, π], in [0, 1].
+  // Fraction of the flux within a half-angle ∈ [0, π], in [0, 1].
   double within(double half_angle_rad) const;
 
-  // The half-angle that holds a fraction ∈ [0, 1] of the flux; 0 for a collimated beam.
+  // Half-angle that contains a fraction ∈ [0, 1] of the flux; 0 for a collimated beam.
   double half_angle_rad(double fraction) const;
 
-  // Flux over the intensity's maximum [sr]; 0 for a collimated beam.
+  // Flux divided by the maximum intensity [sr]; 0 for a collimated beam.
   double solid_angle_sr() const;
 
  private:
@@ -33,7 +33,7 @@ class EncircledFlux {
     double flux;
   };
   void refine(double low_rad, double high_rad, double tolerance, int depth);
-  double flux_density(double angle_rad) const;  // per angle
+  double flux_density(double angle_rad) const;  // per radian
   double flux_between(double low_rad, double high_rad) const;
   double flux_within(const Panel& panel, double angle_rad) const;
 
@@ -55,13 +55,14 @@ struct BeamShape {
   double within_fwhm = 0.0;           // and ±fwhm; 1 for a collimated beam
   bool collimated = false;
 };
+// Widths and encircled flux of an emitter.
 BeamShape describe(const Emitter& emitter);
 
 // "lamp: FWHM 3 deg, full width at tenth maximum 5.468 deg; 50 % of the flux within ±1.5 deg, …"
 std::string one_line(const std::string& name, const BeamShape& shape);
 
-// One row for each different emitter among the beams: the name of its first beam, how many beams
-// share it, power of one, and its shape.
+// One row for each different emitter among the beams: the name of its first beam, the number of
+// beams that share it, the power of one beam, and its shape.
 Table beam_shape_table(std::span<const Beam> beams);
 
 // Beam shapes as lines of text.

@@ -14,8 +14,9 @@ namespace {
 
 constexpr double allowed_error = 1e-6;
 
-// The flux outside a cone, ∫_h^end I dh, by Gauss–Legendre quadrature on even panels of the rise.
-// Summed from the edge inwards, so that the small fractions far out keep their relative precision.
+// Flux outside a cone, ∫_h^end I dh, by Gauss–Legendre quadrature on equal panels of the rise.
+// Summed from the edge inwards, so that small fractions far from the axis keep their relative
+// precision.
 class FluxOutside {
  public:
   explicit FluxOutside(const AngularProfile& profile) : profile_(profile) {
@@ -38,9 +39,9 @@ class FluxOutside {
     return outside_[j + 1] + integral(rise, edge(j + 1));
   }
 
-  // The rise outside which `flux` ∈ (0, total) lies, to rounding: Newton's method, kept inside the
-  // panel by bisection. newton_root() would bisect again where steps no longer shrink because
-  // they are rounding, and end a few bits further off.
+  // Rise outside which `flux` ∈ (0, total) lies, exact to rounding: Newton's method, kept inside
+  // the panel by bisection. newton_root() is less exact by a few bits: when rounding stops its
+  // steps from shrinking, it bisects.
   double inverse(double flux) const {
     const auto below = std::lower_bound(outside_.rbegin(), outside_.rend(), flux);
     const auto j = std::min<size_t>(static_cast<size_t>(outside_.rend() - below) - 1, panels - 1);
@@ -85,8 +86,8 @@ InverseFlux::InverseFlux(const AngularProfile& profile) {
     const double change = high - low;
     const double slope_low = -width * total / outside.intensity(low);
     const double slope_high = -width * total / outside.intensity(high);
-    // Sufficient for a monotone cubic: F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17
-    // (1980).
+    // This condition is sufficient for a monotone cubic: F. N. Fritsch, R. E. Carlson, SIAM J.
+    // Numer. Anal. 17 (1980).
     const bool monotone = slope_low >= 3.0 * change && slope_high >= 3.0 * change;
     const auto cubic = hermite_coefficients(low, change, slope_low, slope_high);
     coefficients_.insert(coefficients_.end(), cubic.begin(), cubic.end());

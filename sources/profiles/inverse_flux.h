@@ -1,12 +1,11 @@
-// From a fraction of the flux to the cone that holds it: the inverse of the encircled flux of a
-// profile.
+// The inverse of the encircled flux of a profile: the cone that contains a fraction of the flux.
 //
-// Method. With the rise h = 1 − cos θ the element of solid angle is 2π dh, so that the flux outside
-// a cone is G(h) = ∫_h^end I dh and its fraction is v = G/G(0). The inverse h(v) is smooth but for
-// v → 0, where profiles without an edge grow like ln 1/v. It is tabulated on knots that divide
-// every octave of v evenly, with cubic Hermite polynomials through the exact values and slopes
-// dh/dv = −G(0)/I between them. The rise carries its relative precision down to the narrowest
-// beams, and gives sin θ = √(h(2 − h)) and cos θ = 1 − h without trigonometry.
+// Method. With the rise h = 1 − cos θ the element of solid angle is 2π dh. The flux outside a cone
+// is G(h) = ∫_h^end I dh, and its fraction is v = G/G(0). The inverse h(v) is smooth except
+// for v → 0, where profiles without an edge increase like ln 1/v. It is tabulated on knots that
+// divide every octave of v evenly, with cubic Hermite polynomials through the exact values and
+// slopes dh/dv = −G(0)/I. The rise has full relative precision down to the narrowest beams.
+// sin θ = √(h(2 − h)) and cos θ = 1 − h need no trigonometry.
 #pragma once
 
 #include <bit>
@@ -19,17 +18,17 @@ namespace photorque {
 
 class InverseFlux {
  public:
-  // Throws NumericalError if the table would be wrong by more than 1e-6 of the flux anywhere, or
-  // not monotone.
+  // Throws NumericalError if the error of the table exceeds 1e-6 of the flux, or if it is not
+  // monotone.
   explicit InverseFlux(const AngularProfile& profile);
 
   // ∫ I dΩ [sr times the unit of I].
   double flux() const { return flux_; }
 
-  // The table: four polynomial coefficients for each interval, lowest power first.
+  // Table: four polynomial coefficients per interval, lowest power first.
   const std::vector<double>& coefficients() const { return coefficients_; }
 
-  // Where a fraction of flux lies in the table. For fractions in [smallest_fraction, 1).
+  // Position of a fraction of the flux in the table. For fractions in [smallest_fraction, 1).
   struct Place {
     uint64_t interval;
     double t;  // ∈ [0, 1) along the interval
@@ -56,7 +55,7 @@ class InverseFlux {
   static constexpr int interval_bits = 5;  // 32 intervals in each octave
   static constexpr uint64_t intervals = static_cast<uint64_t>(octaves) << interval_bits;
 
-  // The rise of the cone outside which this fraction of the flux, in [smallest_fraction, 1), lies.
+  // Rise of the cone outside which this fraction of the flux, in [smallest_fraction, 1), lies.
   double rise(double fraction_outside) const {
     const Place p = place(fraction_outside);
     const double* c = &coefficients_[4 * p.interval];

@@ -31,7 +31,7 @@ void fill_directions(const ValueBlock& rise, const FractionBlock& turn, VectorBl
   }
 }
 
-// The cubic between two knots of a plane.
+// Cubic between two knots of a plane.
 struct PlaneSampler::Curve {
   double from_rad, width_rad;
   double low, slope_low, high, slope_high;
@@ -81,7 +81,8 @@ PlaneSampler::PlaneSampler(const std::vector<RadialPiece>& pieces) {
   if (flux_ > 0.0) index_cells();
 }
 
-// From cells that hold their own flux in place of the flux before them.
+// Converts the `before` of each cell from its flux (see add()) to the fraction of the flux below
+// it, and builds the lookup table.
 void PlaneSampler::index_cells() {
   double before = 0.0;
   for (Cell& cell : cells_) {
@@ -101,7 +102,7 @@ void PlaneSampler::index_cells() {
   }
 }
 
-// Leaves the cell's own flux in place of the flux before it.
+// Appends cells for an interval. Cell::before temporarily stores the cell's flux.
 template <typename Intensity>
 void PlaneSampler::add(const Intensity& curve, double low_rad, double high_rad, double plane_flux,
                        int depth) {
@@ -110,7 +111,7 @@ void PlaneSampler::add(const Intensity& curve, double low_rad, double high_rad, 
   const double rise = rise_at(low_rad), width = rise_at(high_rad) - rise;
   const double low = curve(low_rad), high = curve(high_rad);
   const double trapezium = 0.5 * (low + high) * width;
-  // The cell's fraction below a point, as it is and as the linear density has it. Two points,
+  // Error of the cell's flux below a point with the linear density. It is tested at two points,
   // because a cubic may agree with a straight line in the middle.
   const auto error = [&](double part) {
     const double at_rad = low_rad + part * (high_rad - low_rad);
@@ -131,7 +132,7 @@ double PlaneSampler::rise(double fraction) const {
   size_t k = first_cell_[static_cast<size_t>(fraction * static_cast<double>(first_cell_.size()))];
   while (k + 1 < cells_.size() && cells_[k + 1].before <= fraction) ++k;
   const Cell& cell = cells_[k];
-  // fraction − before = width (low t + (high − low) t²/2), in the form that does not cancel.
+  // Solves fraction − before = width (low t + (high − low) t²/2) in the form without cancellation.
   const double a = std::max(0.0, (fraction - cell.before) / cell.width);
   const double root =
       std::sqrt(std::max(0.0, cell.low * cell.low + 2.0 * (cell.high - cell.low) * a));

@@ -1,5 +1,5 @@
-// From uniform fractions to places and directions: area-preserving maps of blocks to discs and
-// spheres, vectorised; polar angles drawn from one plane of an intensity table.
+// Area-preserving maps from uniform fractions to points on discs and directions on spheres,
+// vectorised; sampling of polar angles from one plane of an intensity table.
 #pragma once
 
 #include <array>
@@ -16,48 +16,48 @@ using FractionBlock = std::array<uint32_t, ray_block>;
 using ValueBlock = std::array<float, ray_block>;
 using VectorBlock = std::array<ValueBlock, 3>;
 
-// Points evenly over a disc about the z axis at z = 0: radius from the square root of the first
-// fraction, azimuth from the second. Polar rather than concentric: every ring then holds its
-// fraction of a stratified set exactly.
+// Uniform points on a disc about the z axis at z = 0: radius from the square root of the first
+// fraction, azimuth from the second. The map is polar, not concentric, so that every ring contains
+// its exact fraction of a stratified set.
 void fill_disc(double radius_m, const FractionBlock& radial, const FractionBlock& turn,
                VectorBlock& point_m);
 
 // Unit vectors at 1 − cos θ = `rise` from the z axis, azimuth from a fraction. The norm is 1 to
-// 2e-7; directions keep their relative precision down to the narrowest beams.
+// 2e-7; the relative precision is full down to the narrowest beams.
 void fill_directions(const ValueBlock& rise, const FractionBlock& turn, VectorBlock& direction);
 
 // Polar angles drawn from one plane of an intensity table.
 //
-// Method. The distribution is tabulated at cells so fine that within them the intensity is linear
-// in the rise 1 − cos θ to `cell_error` of the plane's flux. Every cell holds its exact flux
-// (Gauss–Legendre with 8 nodes on cubics times a sine: rounding), and a quadratic is inverted in
-// it.
+// Method. The distribution is tabulated in cells so small that the intensity within them is linear
+// in the rise 1 − cos θ to `cell_error` of the plane's flux. Every cell stores its exact flux
+// (Gauss–Legendre with 8 nodes on cubics times a sine, exact to rounding). Within a cell a
+// quadratic is inverted.
 
-// 1 − cos θ, with its relative precision near the axis.
+// 1 − cos θ with full relative precision near the axis.
 inline double rise_at(double polar_rad) {
   const double sine = std::sin(0.5 * polar_rad);
   return 2.0 * sine * sine;
 }
 
-// Intensity between two polar angles of a plane, ≥ 0 and smooth on both ends included.
+// Intensity between two polar angles of a plane: ≥ 0 and smooth, including both ends.
 struct RadialPiece {
   double from_rad, to_rad;
   std::function<double(double polar_rad)> intensity;
 };
 
-// The distribution of the polar angle in one plane, for samples of equal weight.
+// Distribution of the polar angle in one plane, for samples of equal weight.
 class PlaneSampler {
  public:
   static constexpr double cell_error = 1e-8;
 
-  // Knots of the plane's cubic: angles, intensities and slopes of one length.
+  // Knots of the plane's cubic: angles, intensities and slopes, equal in number.
   PlaneSampler(const std::vector<double>& polar_rad, const double* intensity, const double* slope);
-  // A plane in pieces that join, rising.
+  // A plane of adjoining pieces, rising.
   explicit PlaneSampler(const std::vector<RadialPiece>& pieces);
 
   // ∫ I sin θ dθ over the plane, ≥ 0.
   double flux() const { return flux_; }
-  // 1 − cos θ below which a fraction ∈ (0, 1) of the flux lies. Only where flux() > 0.
+  // 1 − cos θ below which a fraction ∈ (0, 1) of the flux lies. Requires flux() > 0.
   double rise(double fraction) const;
 
  private:
@@ -75,7 +75,7 @@ class PlaneSampler {
 
   double flux_ = 0.0;
   std::vector<Cell> cells_;
-  std::vector<uint32_t> first_cell_;  // for evenly spaced fractions
+  std::vector<uint32_t> first_cell_;  // lookup table for equally spaced fractions
 };
 
 }  // namespace photorque

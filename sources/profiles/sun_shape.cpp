@@ -12,7 +12,7 @@ namespace photorque {
 
 SunShape::SunShape(std::vector<RadialPiece> pieces)
     : pieces_(std::move(pieces)), sampler_(pieces_) {
-  // 1 − cos θ is integrated, not cos θ: it is small and keeps its digits.
+  // Integrates 1 − cos θ, which is small and keeps its precision, instead of cos θ.
   double flux = 0.0, missing = 0.0;
   for (const RadialPiece& piece : pieces_) {
     constexpr double relative = 1e-11;
@@ -54,7 +54,7 @@ SunShape limb_darkened_disc(double angular_radius_rad, double u1, double u2) {
     const double depth = 1.0 - std::sqrt(std::max(0.0, 1.0 - sine * sine / sine2));
     return 1.0 - u1 * depth - u2 * depth * depth;
   };
-  // At the edge the slope is infinite: pieces crowd there.
+  // The slope is infinite at the edge, so the pieces become smaller towards it.
   std::vector<RadialPiece> pieces;
   double from_rad = 0.0;
   for (double cosine = 0.5; cosine > 0.03; cosine *= 0.5) {
@@ -76,13 +76,13 @@ SunShape gaussian_sun(double sigma_rad) {
 
 namespace {
 
-// κ and γ of Buie's aureole for χ.
+// κ and γ of Buie's aureole for a given χ.
 struct BuieAureole {
   explicit BuieAureole(double chi)
       : kappa(0.9 * std::log(13.5 * chi) * std::pow(chi, -0.3)),
         gamma(2.2 * std::log(0.52 * chi) * std::pow(chi, 0.43) - 0.1) {}
 
-  // `angle` in mrad.
+  // Radiance at `angle` [mrad].
   double operator()(double angle) const { return std::exp(kappa + gamma * std::log(angle)); }
 
   double kappa, gamma;
@@ -97,7 +97,7 @@ double buie_disc(double angle) {
 SunShape buie_sun(double circumsolar_ratio) {
   constexpr double disc = 4.65, end = 43.6;  // mrad
   constexpr double mrad = 1e-3;
-  // Fluxes in mrad², of angles so small that θ is its own sine to 1e-3.
+  // Fluxes in mrad². For these small angles sin θ equals θ to 1e-3.
   const auto flux = [](const auto& radiance, double low, double high) {
     return integrate_adaptively(
                [&](double angle) { return radiance(angle) * std::sin(mrad * angle) / mrad; }, low,

@@ -12,7 +12,7 @@
 namespace photorque {
 namespace {
 
-// Emitter axes of the frame whose z axis is the pole and whose azimuth counts from its x axis.
+// Axes of the table's frame in the emitter's frame: z is the pole, and the azimuth counts from x.
 Mat3 emitter_from_pole(Pole pole) {
   Mat3 axes;
   switch (pole) {
@@ -70,8 +70,8 @@ double TabulatedIntensity::between_planes(size_t angle, double azimuth_rad) cons
 void TabulatedIntensity::find_knots() {
   const std::vector<double>& polar = table_.polar_rad;
   const size_t angles = polar.size();
-  // Across a pole the curve goes on in the opposite plane: as many of its angles as the polynomials
-  // reach.
+  // Across a pole the curve continues in the opposite plane. The number of its angles added here is
+  // the range of the polynomials.
   const size_t beyond = std::min<size_t>(3, angles - 1);
   const size_t before = table_.closed && polar.front() == 0.0 ? beyond : 0;
   const size_t after = table_.closed && polar.back() == pi ? beyond : 0;

@@ -1,5 +1,6 @@
-// Speed and accuracy of the propagator: a free body for 1e5 s beside classical Runge–Kutta, a day
-// of the tabletop platform with every disturbance, and ten minutes with and without derivatives.
+// Speed and accuracy of the propagator: a free body for 1e5 s compared with classical Runge–Kutta,
+// a day of the tabletop platform with every disturbance, and ten minutes with and without
+// derivatives.
 #include <benchmark/benchmark.h>
 
 #include "attitude/propagation/run.h"
@@ -10,8 +11,8 @@ namespace {
 
 using Values = std::vector<std::pair<std::string, std::vector<double>>>;
 
-// The body of the reference: I = diag(500, 200, 300) kg m², 1e5 s from rest attitude. Its attitude
-// then, from a Taylor method of order 40 in quadruple precision.
+// Reference: a free body with I = diag(500, 200, 300) kg m² after 1e5 s from zero attitude. The
+// final attitude comes from a Taylor method of order 40 in quadruple precision.
 const Vec3 moments_kg_m2(500, 200, 300), initial_rate_rad_s(0.5, -0.4, 0.7);
 const Quat final_attitude(5.9442666266515225370e-01, -7.7701057464352362963e-01,
                           -2.0709558729710917510e-01, -4.7882488423132890032e-03);
@@ -43,7 +44,7 @@ void free_body(benchmark::State& state) {
 }
 BENCHMARK(free_body)->Arg(7)->Arg(8)->Arg(9)->Arg(10)->Unit(benchmark::kMillisecond);
 
-// The method of most simulators. Argument: step in ms.
+// Classical Runge–Kutta, the method of most simulators. Argument: step in ms.
 void free_body_runge_kutta_4(benchmark::State& state) {
   const double h = 1e-3 * static_cast<double>(state.range(0));
   using State = Eigen::Matrix<double, 7, 1>;
@@ -87,7 +88,8 @@ void add(AttitudeModel& model, const std::string& kind, const Values& values) {
 }
 
 // Every disturbance of the catalogue that acts on a platform in a laboratory and needs no file,
-// with the sizes of a good platform; the floor shakes at 12 Hz, an appendage swings at 2 Hz.
+// with typical magnitudes of a good platform. The floor shakes at 12 Hz, an appendage swings at 2
+// Hz.
 AttitudeModel everything() {
   AttitudeModel model = tabletop();
   const std::vector<std::pair<std::string, Values>> all = {
@@ -146,7 +148,7 @@ PropagationRun day() {
   return run;
 }
 
-// A whole day with recording, time history and plots; checks that a second one has the same bits.
+// A whole day with recording, time history and plots; checks that a second run has the same bits.
 void day_of_everything(benchmark::State& state) {
   const PropagationRun run = day();
   std::vector<double> first;
@@ -163,7 +165,7 @@ void day_of_everything(benchmark::State& state) {
 }
 BENCHMARK(day_of_everything)->Unit(benchmark::kSecond)->Iterations(2);
 
-// Ten minutes at 10 Hz; argument: number of variables to differentiate by.
+// Ten minutes at 10 Hz; argument: number of variables of the derivatives.
 void ten_minutes(benchmark::State& state, const AttitudeModel& model) {
   const Dynamics dynamics(model);
   const PlatformState start = dynamics.initial_state({0.01, -0.01, 0.1});
@@ -194,7 +196,7 @@ void ten_minutes_of_everything(benchmark::State& state) {
 BENCHMARK(ten_minutes_of_a_pendulum)->Arg(0)->Arg(10)->Unit(benchmark::kMillisecond);
 BENCHMARK(ten_minutes_of_everything)->Arg(0)->Arg(10)->Arg(100)->Unit(benchmark::kMillisecond);
 
-// One attempt of a step, of the free body and of the platform under everything.
+// One attempt of a step, for the free body and for the platform with all disturbances.
 void one_step(benchmark::State& state, const AttitudeModel& model) {
   const Dynamics dynamics(model);
   CollocationStep step(dynamics, 0.0, to_vector(dynamics.initial_state({0.01, -0.01, 0.1})));

@@ -1,4 +1,4 @@
-// Parts of the benchmarks' scenes.
+// Functions that build the benchmarks' scenes.
 #pragma once
 
 #include <string>

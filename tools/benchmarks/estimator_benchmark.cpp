@@ -1,7 +1,7 @@
-// The program's estimator beside Eigen's Levenberg–Marquardt (a port of MINPACK) and, where it is
-// installed, Ceres: the same problems with the same derivatives. `digits` is how many digits of the
-// worst parameter are right: against certified values, or in standard errors of the minimum that
-// all of them find.
+// The program's estimator compared with Eigen's Levenberg–Marquardt (a port of MINPACK) and, if
+// installed, Ceres: equal problems with equal derivatives. `digits` is the number of correct digits
+// of the worst parameter: relative to certified values, or to the common minimum in standard
+// errors.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Cholesky>
@@ -24,8 +24,7 @@
 namespace photorque {
 namespace {
 
-// Standard normal numbers one after the other (G. E. P. Box, M. E. Muller, Ann. Math. Stat. 29,
-// 610).
+// Standard normal random numbers (G. E. P. Box, M. E. Muller, Ann. Math. Stat. 29, 610).
 struct NormalNumbers {
   uint64_t seed, count = 0;
   double operator()() {
@@ -39,8 +38,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 struct Problem {
   std::shared_ptr<const inference::ForwardModel> model;  // for the estimator of the program
-  inference::ResidualFunction residuals;                 // for the others
-  VectorXd start, certified;                             // of the others
+  inference::ResidualFunction residuals;                 // for the other programs
+  VectorXd start, certified;                             // of the other programs
   VectorXd own_start;
   Index rows = 0;
 };
@@ -67,8 +66,9 @@ Problem problem_of(const NistProblem& nist, size_t start) {
   return p;
 }
 
-// A cell's curve, current from voltage: I = I_L − I₀ (e^{(V + I R_s)/a} − 1) − G (V + I R_s), by
-// photocurrent and the logarithms of the others. The "measured" curve has 0.1 % of noise.
+// Curve of a cell, current from voltage: I = I_L − I₀ (e^{(V + I R_s)/a} − 1) − G (V + I R_s).
+// Parameters are the photocurrent and the logarithms of the others. The "measured" curve has 0.1 %
+// of noise.
 NistProblem diode() {
   NistProblem p;
   p.name = "diode";
@@ -103,9 +103,9 @@ NistProblem diode() {
   return p;
 }
 
-// Any forward model as residuals: with H = Rᵀ R, the n numbers R⁻ᵀ g and their slopes R have the
-// gradient and the information of all its residuals, and one number more has the rest of χ². By the
-// step from where it starts.
+// Residuals that represent any forward model. With the information matrix H = Rᵀ R and the gradient
+// g, the n residuals R⁻ᵀ g with the derivatives R have the gradient and the information of the
+// model; one more residual completes χ². The variables are steps from `start`.
 inference::ResidualFunction reduced(std::shared_ptr<const inference::ForwardModel> model,
                                     const VectorXd& start) {
   return [model, start](const VectorXd& step, Index, VectorXd& residuals, MatrixXd* slopes) {
@@ -122,8 +122,8 @@ inference::ResidualFunction reduced(std::shared_ptr<const inference::ForwardMode
   };
 }
 
-// Ten minutes of a tabletop at five readings a second: where it began, its centre of mass, drag,
-// dipole and gyro bias.
+// Ten minutes of a tabletop platform at five readings per second. Fitted: initial state, centre of
+// mass, drag, dipole and gyro bias.
 struct Tabletop {
   NominalModel nominal;
   std::vector<Observation> runs;
@@ -138,7 +138,7 @@ struct Tabletop {
     add("magnetic_dipole", "dipole_A_m2", {0.02, -0.01, 0.01}, 0.05);
     add("gyro_bias", "bias_rad_s", {1e-3, -5e-4, 2e-4}, 1e-3);
     observe_truth();
-    // The nominal values are those of ignorance.
+    // The nominal values are zero, as without knowledge of the effects.
     for (Disturbance& d : model.disturbances) {
       for (Parameter& p : d.parameters) p.value = 0.0;
     }

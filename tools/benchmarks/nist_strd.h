@@ -1,6 +1,6 @@
-// Nonlinear regression problems with certified answers, from the Statistical Reference Datasets of
-// the U.S. National Institute of Standards and Technology (public domain), of each level of
-// difficulty: https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml
+// Nonlinear regression problems with certified results, one per level of difficulty, from the
+// Statistical Reference Datasets of the U.S. National Institute of Standards and Technology (public
+// domain): https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml
 #pragma once
 
 #include <Eigen/Core>
@@ -14,11 +14,11 @@ namespace photorque {
 struct NistProblem {
   std::string name;
   std::vector<double> x, y;
-  std::vector<Eigen::VectorXd> starts;  // two, the second closer
-  // Certified to eleven digits; errors are standard deviations by the scatter.
+  std::vector<Eigen::VectorXd> starts;  // two; the second is closer
+  // Certified to eleven digits; errors are standard deviations from the scatter.
   Eigen::VectorXd certified, certified_error;
   double residual_squares;
-  // f(x; b) and its derivatives by b.
+  // f(x; b) and its derivatives with respect to b.
   std::function<double(double x, const Eigen::VectorXd& b, Eigen::VectorXd& slopes)> model;
 };
 

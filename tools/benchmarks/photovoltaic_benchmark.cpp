@@ -2,8 +2,8 @@
 //
 //   photovoltaic_benchmark --benchmark_min_time=1 --benchmark_repetitions=5
 //
-// The time that counts is `user_s_per_item`, user CPU time, which other programs on the machine
-// disturb least.
+// The relevant time is `user_s_per_item`, the user CPU time, which depends least on other programs
+// on the machine.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
@@ -46,8 +46,8 @@ Diode diode(Diode::Kind kind) {
   return d;
 }
 
-// 10 × 10 photocurrents of up to 6 A. A spot beside the centre; a slope with ripples that make
-// every cell different; and half the array in shade.
+// 10 × 10 photocurrents of up to 6 A: a spot beside the centre, a gradient with ripples that make
+// every cell different, or half the array in shade.
 std::vector<double> light_A(const std::string& map) {
   std::vector<double> light;
   for (int row = 0; row < 10; ++row) {
@@ -63,9 +63,10 @@ std::vector<double> light_A(const std::string& map) {
   return light;
 }
 
-// 100 cells: five substrings of 20 in one string, or ten strings of ten, with real diodes
-// (junctions) or ideal ones. Building the network, its whole curve in 100 steps and all maxima are
-// in the time; the table of the cell type, which does not depend on the light, is not.
+// 100 cells, five substrings of 20 in one string or ten strings of ten, with real diodes
+// (junctions) or ideal ones. The time contains building the network, its whole curve in 100 steps
+// and all maxima. It does not contain the table of the cell type, which is independent of the
+// light.
 void hundred_cells(benchmark::State& state, const std::string& map, int strings, Diode::Kind kind,
                    int intervals) {
   RegularWiring options;

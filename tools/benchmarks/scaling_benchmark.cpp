@@ -2,8 +2,9 @@
 //
 //   scaling_benchmark [largest number of triangles, 1e7]
 //
-// User CPU time of the whole process, so that other programs on the machine do little harm; two
-// threads. The exponent is the slope of a line through log time over log number.
+// Measures user CPU time of the whole process, which depends little on other programs on the
+// machine, with two threads. The exponent is the slope of a straight line through log time over log
+// number.
 #include <sys/resource.h>
 
 #include <cmath>
@@ -60,7 +61,7 @@ std::vector<Beam> lamps(int count) {
   return beams;
 }
 
-// A corrugated sheet of `cells`² squares, mirrored and matt, so that rays bounce.
+// A corrugated sheet of `cells`² squares, partly mirroring and partly matt, so that rays bounce.
 Scene corrugated(int cells) {
   Scene scene;
   scene.surfaces.push_back(grey_surface("foil", 0.4, 0.2));
@@ -85,7 +86,7 @@ Scene corrugated(int cells) {
   return scene;
 }
 
-// A flat receiver, and a grid of squares above it that shade it.
+// A flat receiver, and a grid of squares above it that shades it.
 Scene shaded_plate() {
   Scene scene;
   scene.surfaces.push_back(grey_surface("black", 0, 0));
@@ -102,7 +103,7 @@ Scene shaded_plate() {
   return scene;
 }
 
-// The slope of the straight line through the logarithms.
+// Slope of the straight line through the logarithms.
 double exponent(const std::vector<double>& numbers, const std::vector<double>& times) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   for (size_t i = 0; i < numbers.size(); ++i) {

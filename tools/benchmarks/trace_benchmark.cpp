@@ -1,5 +1,5 @@
-// Speed of the forward tracer without bounces, beside a bare Embree loop over the same sorted rays,
-// and of maps gathered from the surface's side.
+// Speed of the forward tracer without bounces, compared with a bare Embree loop over the same
+// sorted rays; and speed of maps by gathering.
 //
 // Case A: a disc of 0.4 m, pillbox of 1.5 deg, over a 0.5 m square of 100 × 100 bins with a box
 // between. Case B: 50 LEDs of 3 deg over a plate of 20,000 triangles with posts.
@@ -139,7 +139,8 @@ void forward(benchmark::State& state, const Case& which) {
       benchmark::Counter(static_cast<double>(rays) / 1e6, benchmark::Counter::kIsRate);
 }
 
-// A Sun that the tracer does not know as parallel light: its rays fill the disc about the scene.
+// A Sun that the tracer does not recognise as parallel light: its rays fill the disc around the
+// scene.
 class WholeDisc final : public Emitter {
  public:
   explicit WholeDisc(std::shared_ptr<const Emitter> sun) : sun_(std::move(sun)) {}
@@ -155,9 +156,9 @@ class WholeDisc final : public Emitter {
   std::shared_ptr<const Emitter> sun_;
 };
 
-// A mirror of 10 m × 10 m that faces the zenith, 500 m below a receiver of 8 m × 8 m that looks
-// down: with the Sun in the zenith, 1000 W/m² · 100 m² meet the mirror and 64 kW the receiver's
-// back, which lets them through.
+// A mirror of 10 m × 10 m that faces the zenith, 500 m below a receiver of 8 m × 8 m that faces
+// down. With the Sun in the zenith, 1000 W/m² · 100 m² meet the mirror, and 64 kW meet the
+// transparent back of the receiver.
 Case one_mirror(bool whole_disc) {
   Case one;
   one.scene.surfaces.push_back(grey_surface("mirror", 1.0, 0.0));
@@ -180,8 +181,8 @@ Case one_mirror(bool whole_disc) {
   return one;
 }
 
-// Sunlight on one mirror in a large scene: rays that meet the scene, and the error of what the
-// receiver gets from the mirror (64 kW but for the Sun's width).
+// Sunlight on one mirror in a large scene: rays that meet the scene, and the error of the power
+// that the receiver gets from the mirror (64 kW except for the Sun's width).
 void sunlight(benchmark::State& state, const Case& which) {
   const TraceableScene scene(which.scene);
   const FluxMapReceiver map = flux_map(which.scene);
@@ -207,12 +208,12 @@ void sunlight(benchmark::State& state, const Case& which) {
   state.counters["error_kW"] = 1e-3 * received.standard_error;
 }
 
-// Rays of one batch per beam, as they are made or in the order of their landing cells.
+// Rays of one batch per beam, in the order of emission or of their landing cells.
 std::vector<std::vector<Ray>> batches_of(const Case& which, const TraceableScene& scene,
                                          bool sorted) {
   std::vector<std::vector<Ray>> batches(std::min<size_t>(which.beams.size(), 8));
   LaunchBuffer launched;
-  // Rays of one replicate of one beam in `forward`.
+  // Number of rays of one replicate of one beam in `forward`.
   const int log2_rays = std::countr_zero(std::bit_ceil(forward_rays / 16 / which.beams.size()));
   for (size_t b = 0; b < batches.size(); ++b) {
     const Beam& beam = which.beams[b * which.beams.size() / batches.size()];
@@ -227,8 +228,8 @@ std::vector<std::vector<Ray>> batches_of(const Case& which, const TraceableScene
   return batches;
 }
 
-// By octant of direction and, within it, along a Morton curve over 32 × 32 cells of the plane z = 0
-// on which they land.
+// Sorts by octant of direction and, within it, along a Morton curve over 32 × 32 cells of the
+// landing plane z = 0.
 void sort_by_landing(std::span<const Ray> rays, std::vector<uint16_t>& key,
                      std::vector<uint16_t>& order) {
   constexpr float cells = 32.0f;
@@ -267,7 +268,7 @@ void sort_by_landing(std::span<const Ray> rays, std::vector<uint16_t>& key,
   }
 }
 
-// Embree alone on rays that are there already: in their order, or sorted first, as a program must.
+// Embree alone on existing rays: in their order, or including the sorting that a program needs.
 void bare_embree(benchmark::State& state, const Case& which, bool sorts) {
   const TraceableScene scene(which.scene, false);
   const auto batches = batches_of(which, scene, !sorts);
@@ -292,7 +293,7 @@ void bare_embree(benchmark::State& state, const Case& which, bool sorts) {
       benchmark::Counter(static_cast<double>(rays) / 1e6, benchmark::Counter::kIsRate);
 }
 
-// Root mean square over the bins above a tenth of the peak of relative standard error.
+// Root mean square of the relative standard error over the bins above a tenth of the peak.
 double rms_error(const FluxMapReceiver& map, const BinSums& direct) {
   std::vector<Estimate> bins;
   double peak = 0.0;
@@ -310,7 +311,7 @@ double rms_error(const FluxMapReceiver& map, const BinSums& direct) {
   return std::sqrt(squares / lit);
 }
 
-// The map of direct light alone, from the surface's side: everything from beams to errors of bins.
+// Map of direct light by gathering, from beams to errors of bins.
 void gather(benchmark::State& state, const TraceableScene& scene, const FluxMapReceiver& map,
             const RigidTransform& lab_from_body, std::span<const Beam> beams) {
   GatherOptions options;
@@ -328,8 +329,8 @@ void gather(benchmark::State& state, const Case& which) {
   gather(state, scene, flux_map(which.scene), {}, which.beams);
 }
 
-// Shadow rays from points of 1 mm patches of the plate to points of a disc above, as gathering
-// sends them: a batch for each patch.
+// Shadow rays from points of 1 mm patches of the plate to points of a disc above, one batch per
+// patch, as in gathering.
 void shadow_rays(benchmark::State& state, const Case& which, double disc_radius_m) {
   const TraceableScene scene(which.scene, false);
   constexpr size_t patches = 2048, rays = shadow_batch;
@@ -383,18 +384,18 @@ benchmark::internal::Benchmark* add(const char* name, const Run& run) {
 
 void add_all() {
   using State = benchmark::State;
-  // Threads, binary logarithm of the rays.
+  // Arguments: threads, binary logarithm of the number of rays.
   add("one_mirror_sun", [](State& s) { sunlight(s, one_mirror(false)); })
       ->Args({1, 18})
       ->Args({1, 22});
   add("one_mirror_whole_disc", [](State& s) { sunlight(s, one_mirror(true)); })
       ->Args({1, 22})
       ->Args({1, 26});
-  // Threads, points per replicate in bins that may be shaded.
+  // Arguments: threads, points per replicate in bins that may be shaded.
   add("case_a_gather", [](State& s) { gather(s, case_a()); })->Args({1, 16})->Args({2, 16});
   add("case_b_gather", [](State& s) { gather(s, case_b()); })->Args({1, 1})->Args({2, 1});
   add("stasis_30_deg_gather", stasis_30_deg_gather)->Args({1, 16})->Args({2, 16});
-  // Threads.
+  // Argument: threads.
   const auto add_by_threads = [](const char* name, const auto& run) {
     add(name, run)->Arg(1)->Arg(2);
   };

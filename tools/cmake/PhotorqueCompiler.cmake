@@ -1,5 +1,5 @@
-# The compiler, unless CXX or CMAKE_CXX_COMPILER names one: Clang of Debian's security archive where it is installed,
-# which builds in two thirds of g++'s time, otherwise the default. Included before project().
+# Selects the compiler, unless CXX or CMAKE_CXX_COMPILER is set: Clang of Debian's security archive if it is
+# installed, which needs two thirds of g++'s build time, otherwise the default. Included before project().
 if(NOT CMAKE_CXX_COMPILER AND NOT DEFINED ENV{CXX})
   find_program(PHOTORQUE_CLANG clang++-22)
   if(PHOTORQUE_CLANG)

@@ -1,7 +1,7 @@
-# Files of a target are compiled together, in batches: most of a file's compile time goes into headers, which a
-# batch reads once. A room (a folder that holds sources) of 70 kB or more has its batches for itself, the smaller
-# ones of a target share theirs, and so do the rooms named after the target, in smaller batches. Names in anonymous
-# namespaces must therefore differ within a batch. OFF suits daily work on a few files.
+# Files of a target are compiled in batches: most of the compile time of a file is spent on headers, which a batch
+# reads once. A room (a folder that contains sources) of 70 kB or more has its own batches. The smaller rooms of a
+# target share batches. The rooms listed as further arguments share smaller batches. Names in anonymous namespaces must
+# therefore differ within a batch. OFF is useful for daily work on a few files.
 option(PHOTORQUE_UNITY "Compile the files of a room together" OFF)
 function(photorque_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${PHOTORQUE_UNITY} UNITY_BUILD_MODE GROUP)
@@ -45,7 +45,7 @@ function(photorque_unity target)
     math(EXPR sum_${group} "0${sum_${group}} + ${bytes_${file}}")
     set_source_files_properties(${file} PROPERTIES UNITY_GROUP "${group}_${batch}")
   endforeach()
-  # A local name may be that of another file's constant.
+  # A local name may equal a constant of another file.
   target_compile_options(${target} PRIVATE -Wno-shadow)
 endfunction()
 
@@ -57,13 +57,14 @@ function(photorque_precompiled target)
     target_precompile_headers(${target} REUSE_FROM photorque_core)
     get_target_property(type ${target} TYPE)
     if(type STREQUAL EXECUTABLE)
-      target_compile_options(${target} PRIVATE -fPIC)  # a compiled header is for one kind of code
+      target_compile_options(${target} PRIVATE -fPIC)  # a precompiled header is valid for one kind of code
     endif()
   endif()
 endfunction()
 
-# No kernel is in this target: without the costly passes GCC compiles it in less time. Sums are rounded as elsewhere
-# (multiply-add comes with the expensive optimisations). Clang gains little, and its compiled header is for one level.
+# For targets without numerical kernels: GCC compiles them faster without its costly passes. Sums are rounded as
+# elsewhere (multiply-add belongs to the expensive optimisations). Clang gains little, and its precompiled header is
+# valid for one level only.
 function(photorque_cold target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1 -fexpensive-optimizations>)

@@ -1,18 +1,18 @@
-# Compiler settings that hold for every target.
+# Compiler settings of all targets.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-# Programs of the build tree look for libraries where installed ones do. CMake ends its own search paths with
-# a colon, and for the loader nothing after a colon is the folder in which a program is started: a library
-# that lies beside a foreign model would be loaded.
+# Programs of the build tree search libraries in the same places as installed ones. CMake ends its own search paths
+# with a colon. The loader interprets the empty entry after it as the current folder, and would load libraries
+# beside a foreign model.
 set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug" FORCE)
 endif()
-# NDEBUG switches Eigen's assertions off; our own checks are exceptions and stay.
+# NDEBUG disables Eigen's assertions; the checks of this project are exceptions and remain.
 set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
 set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g")
 
@@ -24,15 +24,15 @@ if(PHOTORQUE_WERROR)
   add_compile_options(-Werror)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # The compiler collects garbage above 1 GB alone: a tenth less time for 0.3 GB more memory.
+  # The compiler collects garbage only above 1 GB: a tenth less time for 0.3 GB more memory.
   add_compile_options("SHELL:--param ggc-min-heapsize=1000000")
   # GCC 12 reports these inside Eigen's and the standard library's inlined code.
   add_compile_options(-Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread
                       -Wno-restrict -Wno-psabi)
 endif()
 
-# One instruction set for everybody (AVX2 and FMA, 2013 and newer), not this machine's own: the
-# same binary gives the same bits on every machine that runs it. Empty means the compiler's default.
+# One fixed instruction set (AVX2 and FMA, since 2013) instead of the machine's own: the same binary gives the same
+# bits on every machine. Empty means the compiler's default.
 include(CheckCXXSourceRuns)
 set(CMAKE_REQUIRED_FLAGS "-march=x86-64-v3")
 check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") ? 0 : 1; }"
@@ -54,11 +54,11 @@ if(PHOTORQUE_ARCH)
     add_compile_options(-Wno-uninitialized)
   endif()
 endif()
-# errno and signalling NaN are not used; both block vectorisation and change no result.
+# errno and signalling NaN are not used; both would prevent vectorisation without changing a result.
 add_compile_options(-fno-math-errno -fno-trapping-math)
 
-# Multiply-add in one rounding: faster, and never less accurate. With "off" no result depends on
-# what the compiler inlines, so that two versions of the program can be compared byte by byte.
+# Multiply-add with one rounding: faster, and never less accurate. With "off" no result depends on the compiler's
+# inlining, so that two versions of the program can be compared byte by byte.
 set(PHOTORQUE_FP_CONTRACT "fast" CACHE STRING "-ffp-contract: fast, off")
 add_compile_options(-ffp-contract=${PHOTORQUE_FP_CONTRACT})
 
@@ -68,7 +68,7 @@ if(PHOTORQUE_SANITIZE_THREADS)
   add_link_options(-fsanitize=thread)
 endif()
 if(PHOTORQUE_SANITIZE OR PHOTORQUE_SANITIZE_THREADS)
-  add_compile_options(-g1)  # lines for reports; variables would take a third of the time of a build
+  add_compile_options(-g1)  # line numbers for reports; variables would take a third of the build time
 endif()
 if(PHOTORQUE_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined
@@ -76,21 +76,21 @@ if(PHOTORQUE_SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
-# For many executions of fuzz targets: as fast as a release, but what is undefined, an index beyond a
-# container of the standard library or of Eigen, ends the program. (Clang; memory itself is not watched.)
+# For many executions of fuzz targets: as fast as a release, but the program ends at undefined behaviour and at an
+# index beyond a container of the standard library or of Eigen. (Clang; memory errors are not detected.)
 option(PHOTORQUE_TRAP "Undefined behaviour and indices beyond containers end the program at once" OFF)
 if(PHOTORQUE_TRAP)
   add_compile_options(-O2 -fsanitize=undefined -fno-sanitize=vptr,function -fsanitize-trap=undefined)
   add_compile_definitions(_GLIBCXX_ASSERTIONS)
 endif()
-# Counts which lines are run (Clang's llvm-cov reads them).
+# Counts executed lines (read by Clang's llvm-cov).
 option(PHOTORQUE_COVERAGE "Count the lines that are run" OFF)
 if(PHOTORQUE_COVERAGE)
   add_compile_options(-fprofile-instr-generate -fcoverage-mapping)
   add_link_options(-fprofile-instr-generate)
 endif()
 
-# Protections against exploits of a fault in a reader: for what is shipped (preset "package").
+# Protections against exploits of errors in a reader, for distributed builds (preset "package").
 option(PHOTORQUE_HARDEN "Checks of stack, buffers and jumps, and nothing writable that need not be" OFF)
 if(PHOTORQUE_HARDEN)
   include(CheckPIESupported)
@@ -104,15 +104,15 @@ if(PHOTORQUE_HARDEN)
       add_compile_options(${flag})
     endif()
   endforeach()
-  # Beside optimisation alone; of two definitions of a compiler's default the last holds.
+  # Only with optimisation; the last definition overrides a compiler's default.
   add_compile_options($<$<CONFIG:Release>:-U_FORTIFY_SOURCE> $<$<CONFIG:Release>:-D_FORTIFY_SOURCE=2>)
   add_link_options(-Wl,-z,relro,-z,now,-z,noexecstack)
 endif()
 
 find_program(PHOTORQUE_CCACHE ccache)
 if(PHOTORQUE_CCACHE)
-  # Paths are hashed as seen from the clone, so that a second clone finds what the first compiled.
-  # What a file depends on is known from the compiler, so that a first build preprocesses nothing twice.
+  # Paths are hashed relative to the clone, so that a second clone reuses results of the first. The compiler reports
+  # the dependencies of a file, so that a first build does not preprocess files twice.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
       CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
       CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=true CCACHE_DEPEND=true CCACHE_MAXSIZE=20G
@@ -120,7 +120,7 @@ if(PHOTORQUE_CCACHE)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     add_compile_options(-fpch-preprocess)
   else()
-    add_compile_options("SHELL:-Xclang -fno-pch-timestamp")  # otherwise every compiled header has another content
+    add_compile_options("SHELL:-Xclang -fno-pch-timestamp")  # otherwise every precompiled header has different content
   endif()
 endif()
 find_program(PHOTORQUE_MOLD mold)

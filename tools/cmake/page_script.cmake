@@ -1,4 +1,4 @@
-# Puts the script and the style of HTML pages into a source file. FOLDER has them, OUTPUT is written.
+# Writes a source file OUTPUT with the script and the style of HTML pages in FOLDER.
 file(READ ${FOLDER}/page.min.js script)
 file(READ ${FOLDER}/page.css style)
 foreach(text IN ITEMS "${script}" "${style}")

@@ -10,14 +10,15 @@
 namespace photorque {
 namespace {
 
-constexpr size_t torque = 3;  // the first of its components
+constexpr size_t torque = 3;  // index of its first component
 
 class SunlitDirections final : public LightDirections {
  public:
   SunlitDirections(const OpticalRun& run, const SunLight& sun,
                    std::unique_ptr<const SunlitBody> body, int threads)
       : run_(run), sun_(sun), body_(std::move(body)) {
-    // Light with a small torque against the largest is not followed further.
+    // Tolerance: mirrored light with a torque that is small compared with the largest is not
+    // refined.
     constexpr size_t few = 32;
     constexpr double small = 3e-5;
     const std::vector<RigidTransform> attitudes = fresh_directions(few, sun);
@@ -49,7 +50,8 @@ class SunlitDirections final : public LightDirections {
   void fill(WrenchTable& table, const std::vector<DirectionWrench>& found, bool,
             const Console& console, int threads,
             std::vector<std::string>& warnings) const override {
-    // Scattered light is one field, which every direction sees: so are its errors.
+    // The error of the scattered light is common to all directions, because it comes from one
+    // field.
     WrenchComponents scattered{};
     for (const DirectionWrench& one : found) {
       for (size_t k = 0; k < 6; ++k) {
@@ -73,7 +75,8 @@ class SunlitDirections final : public LightDirections {
   }
 
  private:
-  // Prints the difference between table and rays in other directions, and its expected size.
+  // Prints the difference between table and rays in directions outside the table, and its expected
+  // size.
   void print_comparison(double stated_N_m, const WrenchTable& table, const Console& console,
                         int threads, std::vector<std::string>& warnings) const {
     constexpr size_t fresh = 16;
@@ -95,8 +98,8 @@ class SunlitDirections final : public LightDirections {
       squares += square[i] / fresh;
       noises += noise[i] / fresh;
     }
-    // Relative to the torque of all the light at the largest arm. Rays have single precision, so
-    // that a torque that is zero by symmetry is computed to 1e-7 of this.
+    // Torque of all the light at the largest arm. Rays are in single precision, so that a torque
+    // that is zero by symmetry has an error of 1e-7 of it.
     const double arm_m = run_.experiment().scene.radius_m() + table.about_body_m.norm();
     const double scale_N_m = arm_m * *std::ranges::max_element(emitted_W) / speed_of_light_m_s;
     const double rounding_N_m = 1e-7 * scale_N_m;
@@ -106,7 +109,7 @@ class SunlitDirections final : public LightDirections {
                  std::to_string(fresh) + " other directions, traced torques differ by " +
                  readable_number(std::sqrt(squares) / largest_N_m, 2) + ", with a noise of " +
                  readable_number(std::sqrt(noises) / largest_N_m, 2));
-    constexpr double loud = 3.0;  // of a root mean square over 48 numbers
+    constexpr double loud = 3.0;  // for a root mean square over 48 numbers
     const double sigmas =
         std::sqrt(squares / (noises + stated_N_m * stated_N_m + rounding_N_m * rounding_N_m));
     if (sigmas > loud) {
@@ -127,12 +130,13 @@ class SunlitDirections final : public LightDirections {
 
 std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const SunLight& sun,
                                                    const Vec3& about_body_m, int threads) {
-  // Fewer meetings than the default are asked of rays alone.
+  // A lower depth limit than the default can be fulfilled only by rays.
   const ExperimentFile& file = run.experiment().file;
   if (file.effort.direct == TraceEffort::Direct::rays) return nullptr;
   if (file.trace.max_depth < TraceOptions{}.max_depth) return nullptr;
   SunlitEffort effort;
-  constexpr uint64_t for_all = 64, most = 1ull << 24;  // scattered light is found once
+  // Scattered light is computed once for all directions.
+  constexpr uint64_t for_all = 64, most = 1ull << 24;
   const uint64_t rays = file.torque_map_rays.value_or(file.trace.rays);
   effort.scattered.rays = std::min(for_all * std::min(rays, most), most);
   effort.scattered.seed = run.provenance().seed;

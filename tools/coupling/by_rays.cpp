@@ -13,8 +13,7 @@ WrenchComponents components_of(const Wrench& wrench) {
   return {f.x(), f.y(), f.z(), t.x(), t.y(), t.z()};
 }
 
-// Wrench of light after its first contact, about a point, twice: from either half of the
-// replicates.
+// Wrench of light after its first contact, about a point, from each half of the replicates.
 WrenchPair bounced_of(const WrenchReceiver& receiver, const BinSums& sums,
                       const Vec3& about_body_m) {
   const int half = sums.replicates / 2;
@@ -42,7 +41,7 @@ class TracedDirections final : public LightDirections {
     return found_of(run_.run(lab_from_body, {}, run_.experiment().file.torque_map_rays));
   }
 
-  // Bounced light smoothed, unless neighbours are too far apart for that.
+  // Bounced light is smoothed, unless the nodes are too far apart for that.
   void fill(WrenchTable& table, const std::vector<DirectionWrench>& found, bool whole,
             const Console& console, int threads, std::vector<std::string>&) const override {
     std::vector<WrenchPair> halves;
@@ -106,7 +105,7 @@ class TracedDirections final : public LightDirections {
   void print_comparison(const SmoothWrench& smooth, const WrenchTable& table,
                         const Console& console, int threads) const {
     constexpr size_t fresh = 32;
-    constexpr uint64_t more = 8;  // rays, so that their own noise counts less
+    constexpr uint64_t more = 8;  // times the rays, so that their own noise is small
     const ExperimentFile& file = run_.experiment().file;
     const std::vector<RigidTransform> attitudes = fresh_directions(fresh, sun_);
     std::vector<double> square(fresh, 0.0), noise(fresh, 0.0);

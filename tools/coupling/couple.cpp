@@ -21,7 +21,7 @@ namespace {
 constexpr const char* checkpoint_format = "photorque checkpoint 1";
 constexpr uint64_t largest_checkpoint_bytes = 1ull << 36;
 
-// The text up to the next end of a line, which `text` then begins behind.
+// The text up to the next line end; moves `at` behind it.
 std::string next_line(const std::string& text, size_t& at) {
   const size_t end = text.find('\n', at);
   if (end == std::string::npos) return {};
@@ -181,7 +181,7 @@ std::vector<LampGroup> lamp_groups(const std::vector<GroupOutput>& outputs) {
   return groups;
 }
 
-// Events of lamps, light and battery, among those of the motion.
+// Merges the events of lamps, light and battery into those of the motion.
 void add_events(PropagationResult& result, const CoupledRun& beside) {
   std::vector<Event>& events = result.events;
   const double end_s = result.states.back().time_s;
@@ -208,10 +208,12 @@ bool hits_tilt_limit(const PropagationResult& result) {
                              [](const Event& event) { return event.name == "tilt_stop"; });
 }
 
-// The largest error of any component, of each group of lamps, in the worst direction all the time.
+// Upper bound of the attitude error, if the largest error of a component occurs in each group of
+// lamps in the worst direction all the time.
 std::optional<double> attitude_error_rad(const PropagationRun& run, const RotationTable& table,
                                          size_t groups) {
-  constexpr double longest_s = 3600.0;  // beyond, the derivatives take longer than the run
+  // For longer runs the derivatives take more time than the run.
+  constexpr double longest_s = 3600.0;
   if (run.duration_s > longest_s) return {};
   const double torque_N_m = std::sqrt(3.0) * static_cast<double>(groups) * table.error().max[0];
   const double bound_rad = attitude_error_bound_rad(
@@ -238,7 +240,7 @@ std::vector<std::string> missed_tolerance(const RotationTable& table, double tol
           " of the largest: " + off + "; increase light.max_traces or light.rays"};
 }
 
-// The state of a run that is kept now and then, and its messages.
+// The checkpoint of a run, and messages about it.
 class KeptState {
  public:
   KeptState(const Console& console, CheckpointFile* file, std::string identity)
@@ -246,11 +248,11 @@ class KeptState {
     if (file_ != nullptr) kept_ = file_->read(identity_);
   }
 
-  // The range of the table of light in the interrupted run.
+  // Range of the table of light in the interrupted run.
   std::optional<double> table_tilt_rad() const {
     return kept_ ? std::optional(kept_->table_tilt_rad) : std::nullopt;
   }
-  // The stored state, once: the first run continues from it.
+  // Returns the stored state once: only the first run continues from it.
   std::optional<std::string> take() {
     if (!kept_) return {};
     console_.line("goes on from " + file_->path().string());
@@ -259,7 +261,7 @@ class KeptState {
     return state;
   }
   bool due() const { return file_ != nullptr && file_->due(); }
-  // Hours of work do not end because of a disk that is full for a while.
+  // A disk that is full for a while must not end a long run.
   void write(double table_tilt_rad, double time_s, const std::string& state) const {
     try {
       file_->write(identity_, table_tilt_rad, state);
@@ -275,7 +277,7 @@ class KeptState {
   std::optional<CheckpointFile::Kept> kept_;
 };
 
-// One run: the motion, and beside it light and power, where there are any.
+// Propagates one run: the motion and, if present, light and power.
 PropagationResult step_through(const PropagationRun& run, const Console& console,
                                CoupledRun* beside, double table_tilt_rad, KeptState& kept) {
   RecordedRun recorded(run, console.progress("propagating"),
@@ -303,7 +305,7 @@ PropagationResult step_through(const PropagationRun& run, const Console& console
   return recorded.result();
 }
 
-// One run in light that is known up to a tilt; at it the run stops.
+// One run with a table of light up to a tilt; the run stops at this tilt.
 void attempt(CoupledResult& result, const Console& console, const ExperimentFile& file,
              const LightSettings& settings, PropagationRun run, double table_tilt_rad,
              KeptState& kept) {

@@ -32,7 +32,7 @@ std::vector<GroupOutput> group_outputs(const LightModel& light, const LightSetti
       on = one.on;
       schedule.time_s.push_back(one.time_s);
     }
-    // The Sun does not warm up.
+    // The Sun has no warm-up droop.
     outputs.push_back({group, std::make_shared<const LampOutput>(group.is_sun ? LampDroop{} : droop,
                                                                  schedule, start_s)});
     outputs.back().corners_s = light.corners_s();
@@ -88,7 +88,7 @@ double CoupledRun::output(const GroupOutput& group, double time_s, double illumi
   return group.at(time_s) * (group.group.is_sun ? illumination : 1.0);
 }
 
-// The next segment ends at the next exchange, at a switch or at the end of the run. The power
+// The next segment ends at the next exchange, at a switch, or at the end of the run. The power
 // system divides it into its own steps.
 void CoupledRun::plan(double from_s) {
   const double steps = std::floor((from_s - start_s_) / step_s_ + 1e-9) + 1.0;
@@ -131,7 +131,8 @@ void CoupledRun::begin(Propagator& motion) {
   motion.exchange({current_A, held_, start_charge_C_, segment_end_s_});
 }
 
-// Attitude and light at the instants of the power system that the last step of the motion passed.
+// Stores attitude and light at those instants of the power system that are within the last step of
+// the motion.
 void CoupledRun::collect(Propagator& motion) {
   std::vector<Lanes> y(static_cast<size_t>(motion.dynamics().size()));
   while (collected_ < instants_.size() && instants_[collected_].middle_s() <= motion.step_end_s()) {
@@ -167,7 +168,7 @@ PowerSupply::Light CoupledRun::light_of(const Instant& instant) const {
     }
     light.on_cells_W += factor * std::max(0.0, cell[light_.cells()]);
   }
-  // Weights of a joint's positions may be negative.
+  // Clamped, because weights of a joint's positions may be negative.
   for (double& current_A : light.photocurrent_A) current_A = std::max(0.0, current_A);
   light.on_cells_W = std::max(0.0, light.on_cells_W);
   return light;
@@ -179,7 +180,7 @@ void CoupledRun::add_trace(double time_s, std::vector<double> channels) {
   ++traces_;
 }
 
-// The polynomial through the last three traces.
+// Polynomial through the last three traces.
 ContinuedTorque CoupledRun::continued(double illumination) const {
   const size_t count = traced_.size();
   const double now_s = traced_.back().time_s;
@@ -206,13 +207,13 @@ ContinuedTorque CoupledRun::continued(double illumination) const {
 }
 
 void CoupledRun::look_for_light(double time_s, double light_W) {
-  constexpr double dark = 1e-3;  // of the largest light so far
+  constexpr double dark = 1e-3;  // relative to the largest light so far
   max_light_W_ = std::max(max_light_W_, light_W);
   const double limit_W = dark * max_light_W_;
   const bool lit = light_W > limit_W;
   if (lit != is_lit_ && max_light_W_ > 0.0) {
-    // Lamps are switched at the beginning of a segment. Otherwise the time of the event follows by
-    // linear interpolation.
+    // At the beginning of a segment the light may change by a switch. Otherwise the time of the
+    // event follows from linear interpolation.
     double when_s = segment_from_s_;
     const bool jumps = last_light_s_ <= segment_from_s_ &&
                        std::ranges::binary_search(switches_s_, segment_from_s_);

@@ -1,4 +1,4 @@
-// Light, power and attitude in one run: the simulations beside the motion.
+// Simulation of light and power that is coupled to the motion.
 #pragma once
 
 #include <functional>
@@ -12,21 +12,23 @@
 
 namespace photorque {
 
-// The lamps of one group over time, and which channels are theirs.
+// Output of one group of lamps over time, and its channels.
 struct GroupOutput {
   LightModel::Group group;
   std::shared_ptr<const LampOutput> output;
-  // Its fraction: the weight of a joint's position, which may be negative; nothing: all.
+  // Weight of the group: that of a joint's position, which may be negative; empty: 1.
   std::function<double(double time_s)> weight = {};
-  std::vector<double> corners_s = {};  // of that weight
+  std::vector<double> corners_s = {};  // corners of the weight over time
 
   double at(double time_s) const { return output->at(time_s) * weight_at(time_s); }
   double weight_at(double time_s) const { return weight ? weight(time_s) : 1.0; }
 };
+// Output of every group of lamps over time, with its switches and warm-up droop.
 std::vector<GroupOutput> group_outputs(const LightModel& light, const LightSettings& settings,
                                        double start_s);
 
-// Means over one exchange interval, which ends at time_s; charge and temperature at its end.
+// Means over one exchange interval that ends at time_s; charge and temperature are those at its
+// end.
 struct PowerRow {
   double time_s = 0.0;
   double light_W = 0.0;  // on the cells
@@ -35,7 +37,7 @@ struct PowerRow {
   double battery_current_A = 0.0;
   double stored_J = 0.0;
   double temperature_K = 0.0;
-  double output = 0.0;  // of all lamps, over that at full power
+  double output = 0.0;  // of all lamps, relative to full power
 };
 
 // Difference between the extrapolated torque of light and the next trace.
@@ -44,24 +46,24 @@ struct ContinuationError {
   size_t count = 0;
 };
 
-// Exchanges with the motion every LightSettings::step_s and at every switch of lamps. Between two
-// exchanges the motion goes ahead with the last current of the battery; then light and power follow
-// over the same interval, at their own steps, along the attitudes that were passed; then the charge
-// of the motion becomes theirs. What an interval's current is wrong by moves the centre of mass for
-// one interval by less than 1e-12 m, so nothing is repeated.
+// Exchanges data with the motion every LightSettings::step_s and at every switch of lamps. Between
+// two exchanges the motion advances with the last battery current. Then light and power are
+// simulated over the same interval, at their own steps, along the computed attitudes. Finally the
+// charge in the motion is corrected. The error of the current during an interval moves the centre
+// of mass by less than 1e-12 m for one interval, so that no iteration is needed.
 class CoupledRun {
  public:
-  // `table` null: light is traced at every exchange. `supply` none: light alone. All must outlive
-  // the run.
+  // `table` null: light is traced at every exchange. Without `supply` only light is simulated. All
+  // arguments must outlive the run.
   CoupledRun(const LightModel& light, std::shared_ptr<const RotationTable> table,
              std::vector<GroupOutput> outputs, std::optional<PowerSupply> supply,
              const LightSettings& settings, const PropagationRun& run, double battery_voltage_V);
 
-  // Before the first step of the motion, unless the run goes on from a snapshot.
+  // Call it before the first step of the motion, unless the run continues from a snapshot.
   void begin(Propagator& motion);
   bool has_begun() const { return begun_; }
-  // After every step of the motion: the instants within it, and at the end of a segment the
-  // exchange.
+  // Call it after every step of the motion: processes the instants within the step and, at the end
+  // of a segment, the exchange.
   void follow(Propagator& motion);
   void keep(Snapshot& snapshot);
 
@@ -74,16 +76,16 @@ class CoupledRun {
   const ContinuationError& continuation() const { return continuation_; }
   double emitted_J() const { return emitted_.value(); }
   size_t traces() const { return traces_; }
-  // By how much, at most, an exchange corrected the charge that the motion had gone ahead with.
+  // Largest correction of the charge at an exchange.
   double max_correction_C() const { return max_correction_C_; }
 
  private:
-  // All channels with the lamps at full output, where and when.
+  // All channels at one instant, with the lamps at full output.
   struct Traced {
     double time_s = 0.0;
     std::vector<double> channels;
   };
-  // The middle of a step of the power system.
+  // A step of the power system; its channels are those at the middle of the step.
   struct Instant {
     double from_s = 0.0, length_s = 0.0;
     std::vector<double> channels;

@@ -31,7 +31,8 @@ SunLight only_sun(const Experiment& experiment) {
   return {-travel, irradiance_W_m2 / speed_of_light_m_s};
 }
 
-// The earlier node with the same direction, or this one: azimuths at a pole, and a full turn.
+// First node with the same direction: azimuths coincide at a pole and after a full turn. The node
+// itself if there is no earlier one.
 size_t first_of_direction(const WrenchTable& table, size_t around, size_t polar) {
   constexpr double same = 1e-12;
   if (std::abs(table.polar_rad[polar]) > 0.5 * pi - same) return table.node(0, polar);
@@ -39,9 +40,9 @@ size_t first_of_direction(const WrenchTable& table, size_t around, size_t polar)
   return std::abs(turn - 2.0 * pi) < same ? table.node(0, polar) : table.node(around, polar);
 }
 
-// A node of the table, in their order.
+// A node of the table.
 struct Direction {
-  size_t node, first;  // of the table; the earlier one with the same direction, or itself
+  size_t node, first;  // indices: of the node; of the first node with the same direction
   size_t around, polar;
   RigidTransform lab_from_body;
 };
@@ -59,7 +60,8 @@ std::vector<Direction> directions_of(const WrenchTable& table, const DirectionGr
   return all;
 }
 
-// format_spad() requires a full, regular sphere: otherwise there is no such file.
+// Whether the table covers a full, regular sphere, as format_spad() requires; otherwise that file
+// is not written.
 bool covers_sphere(const WrenchTable& table) {
   const auto spans = [](const std::vector<double>& axis, double half) {
     return axis.size() > 1 && std::abs(axis.front() + half) < 1e-9 &&
@@ -75,7 +77,7 @@ bool covers_sphere(const WrenchTable& table) {
          regular(table.around_rad) && regular(table.polar_rad);
 }
 
-// The longest of these vectors; its error is that of the component along it.
+// The longest of these vectors; its error is the component of the error along it.
 Estimate longest(const std::vector<Vec3>& vectors, const std::vector<Vec3>& errors) {
   Estimate result;
   for (size_t i = 0; i < vectors.size(); ++i) {
@@ -108,7 +110,7 @@ void print_summary(const Console& console, const WrenchTable& table, const SunLi
                show(mean_push_N(table) / sun.pressure_Pa) + " m2");
 }
 
-// The completed directions, one after another; kept in a file now and then.
+// The completed directions in order, with a checkpoint at intervals.
 class DoneDirections {
  public:
   DoneDirections(const OpticalRun& run, const Console& console, CheckpointFile* file)
@@ -138,7 +140,7 @@ class DoneDirections {
     keep(snapshot);
     try {
       file_->write(identity_, 0.0, snapshot.bytes());
-    } catch (const InputError& error) {  // a disk that is full for a while
+    } catch (const InputError& error) {  // the disk may be full for a while
       console_.line("note: no checkpoint: " + std::string(error.what()));
     }
   }
@@ -154,8 +156,8 @@ class DoneDirections {
   std::vector<DirectionWrench> all_;
 };
 
-// Finds what is not done yet, so many at a time, each on one thread: a direction is too short to
-// share out.
+// Computes the remaining directions in blocks, each direction on one thread, because a single
+// direction is too short for parallel work.
 void find_all(const LightDirections& light, const std::vector<Direction>& distinct,
               const Console& console, int threads, DoneDirections& done) {
   constexpr size_t block = 64;
@@ -180,11 +182,11 @@ void find_all(const LightDirections& light, const std::vector<Direction>& distin
   console.done();
 }
 
-// Every node in their order, as a trace shows it; what the same direction gave before is not traced
-// again.
+// Passes every node to `watch` in order, traced for display. Directions that occur again are not
+// traced again.
 void show_nodes(const OpticalRun& run, const std::vector<Direction>& all, size_t nodes,
                 const NodeWatch& watch) {
-  constexpr uint64_t enough = 1 << 16;  // rays, to paint a scene with
+  constexpr uint64_t enough = 1 << 16;  // rays for painting a scene
   std::map<size_t, OpticalResult> earlier;
   for (const Direction& one : all) {
     if (one.first != one.node) {
@@ -233,7 +235,7 @@ DirectionMap map_over_directions(const Console& console, const OpticalRun& run, 
   const WallTime wall;
   const std::vector<Direction> all = directions_of(table, grid, sun);
   std::vector<Direction> distinct;
-  std::vector<size_t> place(table.nodes());  // of a node's direction among the distinct ones
+  std::vector<size_t> place(table.nodes());  // index in `distinct` per node
   for (const Direction& one : all) {
     if (one.first == one.node) distinct.push_back(one);
     place[one.node] = one.first == one.node ? distinct.size() - 1 : place[one.first];

@@ -1,5 +1,5 @@
-// torque-map over directions of light: the table of a body in sunlight, and ways to find force and
-// torque at one direction after another.
+// Wrench tables over directions of light for a body in sunlight, and methods that compute force and
+// torque for one direction.
 #pragma once
 
 #include <memory>
@@ -19,30 +19,30 @@ struct DirectionMap {
   RunResult result;
 };
 
-// Force and torque with the Sun at every direction of [torque_map]: by quadrature where the scene
-// is for that, else by rays. When the directions cover the sphere, the wrench per pressure is a
-// file of the result in the SPAD layout. The experiment's only source must be a sun. Directions are
-// shared out over `threads` (0: all); `run` itself is best made for one. `watch` has each traced
-// for it. With a checkpoint, finished nodes are saved there periodically, and the run resumes from
-// it.
+// Force and torque with the Sun in every direction of [torque_map]: by quadrature if the scene
+// permits it, otherwise by rays. If the directions cover the sphere, the result contains the wrench
+// per pressure as a file in the SPAD format. The experiment's only source must be a sun. Directions
+// are distributed over `threads` (0: all); `run` should use one thread. `watch` receives each node,
+// traced for display. With a checkpoint, finished nodes are saved periodically, and the run resumes
+// from it.
 DirectionMap map_over_directions(const Console& console, const OpticalRun& run, int threads,
                                  const NodeWatch& watch = {}, CheckpointFile* checkpoint = nullptr);
 
-// The experiment's sun: tables may be normalised by its pressure.
+// The experiment's sun, by whose pressure tables may be normalised.
 struct SunLight {
   Vec3 towards_lab;
-  double pressure_Pa = 0.0;  // irradiance over the speed of light
+  double pressure_Pa = 0.0;  // irradiance divided by the speed of light
 
-  // The attitude at which the Sun is in the direction `towards_body`. It depends on nothing else,
-  // so that equal directions with different azimuths give equal results.
+  // Attitude for which the Sun is in the direction `towards_body`. It depends only on the
+  // direction, so that equal directions with different azimuths give equal results.
   RigidTransform lab_from_body(const Vec3& towards_body) const;
 };
 
-// The wrench at one direction, about the point of the table.
+// Wrench for one direction, about the reference point of the table.
 struct DirectionWrench {
   WrenchComponents direct{};
-  WrenchPair bounced;        // of light after its first bounce, twice
-  WrenchComponents error{};  // standard error of the parts that both halves share
+  WrenchPair bounced;        // of light after its first bounce: two independent estimates
+  WrenchComponents error{};  // standard error common to both estimates
   uint64_t rays = 0;
   std::vector<std::string> warnings;
 
@@ -57,27 +57,27 @@ class LightDirections {
   virtual ~LightDirections() = default;
   // Safe to call from many threads.
   virtual DirectionWrench at(const RigidTransform& lab_from_body) const = 0;
-  // Puts the result at each node into the table, and states its error; warns where a check fails.
-  // `whole`: the nodes go from pole to pole and all round.
+  // Writes the result at each node into the table with its error; adds warnings for failed checks.
+  // `whole`: the nodes cover the sphere from pole to pole.
   virtual void fill(WrenchTable& table, const std::vector<DirectionWrench>& found, bool whole,
                     const Console& console, int threads,
                     std::vector<std::string>& warnings) const = 0;
 };
 
-// Tables by ray tracing; direct light is integrated over the surfaces if possible. Over a whole
+// Wrenches by ray tracing; direct light is integrated over the surfaces if possible. Over a whole
 // sphere, light after the first contact is smoothed.
 std::unique_ptr<LightDirections> traced_directions(const OpticalRun& run, const SunLight& sun,
                                                    const Vec3& about_body_m);
 
-// Tables by quadrature (receivers/gather/bodies/sunlit_body.h). Null if the scene does not permit
+// Wrenches by quadrature (receivers/gather/bodies/sunlit_body.h). Null if the scene does not permit
 // it, or if the experiment requires rays.
 std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const SunLight& sun,
                                                    const Vec3& about_body_m, int threads);
 
-// Directions that no table has, evenly over the sphere, in which a method is compared with rays.
+// Attitudes for evenly distributed directions outside the table, for comparisons with rays.
 std::vector<RigidTransform> fresh_directions(size_t count, const SunLight& sun);
 
-// The longest of these torques [N m].
+// Magnitude of the largest torque in the table [N m].
 double largest_torque_N_m(const WrenchTable& table);
 
 }  // namespace photorque

@@ -20,7 +20,7 @@ bool has_light(const ExperimentFile& file) {
 
 namespace {
 
-// A source's lamps are called NAME or NAME[0], NAME[1], …
+// Whether a lamp belongs to a source: its name is NAME or NAME[0], NAME[1], …
 bool is_of(const Beam& beam, const std::string& source) {
   return beam.name == source || beam.name.starts_with(source + "[");
 }
@@ -64,7 +64,7 @@ LightModel::~LightModel() = default;
 LightModel::LightModel(const RunOptions& options, const Console& console,
                        const LightSettings& settings, const Platform& platform)
     : settings_(settings), threads_(options.threads), options_(options) {
-  options_.seed.reset();  // that of the instruments
+  options_.seed.reset();  // the seed belongs to the instruments
   // For a table, many attitudes are traced in parallel, each with one thread; this uses the
   // processors better than one trace with many threads.
   if (settings.mode == LightSettings::Mode::table) options_.threads = 1;
@@ -127,7 +127,7 @@ double LightModel::first_angle_rad(double initial_tilt_rad, bool is_live) const 
   return std::min(max_angle_rad_, tilt_rad + sun_angle_rad_);
 }
 
-// The joint that moves, of which there is at most one.
+// Finds the moving joint; at most one is allowed.
 void LightModel::find_joint(const ExperimentFile& file) {
   for (size_t j = 0; j < file.joints.size(); ++j) {
     const Joint& joint = file.joints[j];
@@ -146,7 +146,8 @@ void LightModel::find_joint(const ExperimentFile& file) {
   }
 }
 
-// Suns, which the planet's shadow takes away, apart from lamps.
+// Name of a lamp's group. Suns are separate from lamps, because the planet's shadow affects only
+// them.
 std::string LightModel::group_of(const Beam& beam) const {
   for (const std::string& name : switched_sources(settings_)) {
     if (is_of(beam, name)) return name;
@@ -154,7 +155,7 @@ std::string LightModel::group_of(const Beam& beam) const {
   return is_sun(beam) ? "sun" : "light";
 }
 
-// `run`: made already, or nothing.
+// `run`: an existing run, or null.
 LightModel::Light LightModel::make_light(std::unique_ptr<OpticalRun> run, const std::string& group,
                                          std::optional<double> joint_rad) const {
   Light light{std::move(run), {}};
@@ -202,7 +203,7 @@ RotationSample LightModel::trace(const Quat& lab_from_body) const {
   return sample;
 }
 
-// The channels of one group.
+// Appends the channels of one group to the sample.
 void LightModel::add(const Light& light, const Quat& lab_from_body, RotationSample& sample) const {
   const auto put = [&](double value, double error) {
     sample.value.push_back(value);
@@ -232,7 +233,7 @@ std::string LightModel::content_key(const ExperimentFile& file) const {
       text += std::string(table) + canonical_text(file.settings.raw(table));
   }
   if (file.settings.has("array")) {
-    // Keys behind the cells do not change the light.
+    // Keys that act after the cells do not change the light.
     text += "array" + canonical_text(file.settings.raw("array"),
                                      {"day", "thermal", "tracker", "target", "layout", "chain"});
   }

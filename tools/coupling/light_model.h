@@ -1,5 +1,4 @@
-// The light in a simulation of the attitude: the table [light], and torque and power at any
-// attitude.
+// Light in a simulation of the attitude: the table [light], and torque and power at any attitude.
 #pragma once
 
 #include <memory>
@@ -21,9 +20,9 @@ namespace photorque {
 // [light]
 struct LightSettings {
   enum class Mode {
-    table,  // traced once over the attitudes, then interpolated
+    table,  // traced in advance over the attitudes, then interpolated
     trace,  // traced at every exchange of the run
-    off,    // no light, as without a scene
+    off,    // no light, as if there were no scene
   };
   Mode mode = Mode::table;
   double tolerance = 1e-3;  // of the table, relative to the largest value
@@ -32,31 +31,31 @@ struct LightSettings {
   size_t max_traces = 20000;
   std::optional<double> max_tilt_rad;  // range of the first table
   std::optional<std::filesystem::path>
-      cache;  // folder of stored tables; none: tables are not stored
-  // [[light.switch]]: lamps of one source, or of all.
+      cache;  // folder of stored tables; empty: tables are not stored
+  // [[light.switch]]: switches the lamps of one source, or all.
   struct Switch {
     double time_s = 0.0;
     std::string source;  // empty: all
     bool on = true;
   };
-  std::vector<Switch> switches;  // in order of time
+  std::vector<Switch> switches;  // sorted by time
 };
 
 // Whether `propagate` couples light and motion: the file has a scene, sources and a platform.
 bool has_light(const ExperimentFile& file);
 
-// Reads [light], which may be absent. InputError as usual, and for switches out of order.
+// Reads [light], which may be absent. Throws InputError for invalid keys and for switches that are
+// not sorted by time.
 LightSettings read_light(const ExperimentFile& file);
 Key light_table();
 
-// Effect of light on the platform and its array at any attitude: traced, or from a table of traces.
-
-// The experiment's light as a function of attitude. Channels of a group of lamps, from `first`:
-// torque about the body origin and force (x, y, z, body axes), then, where there is an array, the
-// photocurrent of each cell at the array's temperature and all light on the cells [W].
+// The experiment's light as a function of attitude, traced or from a table. Channels of a group of
+// lamps, from `first`: torque about the body origin and force (x, y, z, body axes); then, if there
+// is an array, the photocurrent of each cell at the array's temperature and all light on the cells
+// [W].
 class LightModel {
  public:
-  // Reads scene, sources and array. Lamps that [[light.switch]] names singly form groups.
+  // Reads scene, sources and array. Sources named in [[light.switch]] form separate groups.
   LightModel(const RunOptions& options, const Console& console, const LightSettings& settings,
              const Platform& platform);
   ~LightModel();
@@ -66,10 +65,10 @@ class LightModel {
     size_t first = 0;  // channel
     bool is_sun = false;
     double emitted_W = 0.0;  // 0 for the Sun
-    size_t position = 0;     // of the joint that follows a schedule, see weight()
+    size_t position = 0;  // index of the joint's position for a joint with a schedule, see weight()
   };
   const std::vector<Group>& groups() const { return groups_; }
-  // The weight of a group at an instant: that of its joint position, otherwise 1.
+  // Weight of a group at an instant: that of its joint position, otherwise 1.
   double weight(const Group& group, double time_s) const;
   // Times in the schedule of the joint, at which the angular rate changes.
   std::vector<double> corners_s() const;
@@ -80,24 +79,24 @@ class LightModel {
   const std::optional<DaySettings>& day() const { return day_; }
   const std::optional<Tracker>& tracker() const { return tracker_; }
   const std::vector<double>& cell_area_m2() const { return cell_area_m2_; }
-  // Direction towards the Sun in the lab, where it is the only light.
+  // Direction towards the Sun in the lab, if it is the only light.
   const std::optional<Vec3>& sun_direction_lab() const { return sun_direction_lab_; }
   const std::vector<std::pair<std::string, std::string>>& inputs() const { return inputs_; }
 
-  // All channels at one attitude. `progress` as of the console.
+  // All channels at one attitude.
   RotationSample trace(const Quat& lab_from_body) const;
 
-  // The largest possible angle of body z from the vertical, or from the Sun if it is the only
-  // light: the tilt limit of the platform, or π.
+  // Largest possible angle of body z from the vertical, or from the Sun if it is the only light:
+  // the tilt limit of the platform, or π.
   double max_angle_rad() const { return max_angle_rad_; }
-  // The range of the first table for a motion that starts at a tilt. A run in real time cannot
-  // start again with a wider table: its range is [light] max_tilt_deg or all angles.
+  // Range of the first table for a motion with this initial tilt. A run in real time cannot restart
+  // with a wider table: its range is [light] max_tilt_deg or all angles.
   double first_angle_rad(double initial_tilt_rad, bool is_live) const;
-  // The table up to an angle, from the cache or traced; prints the origin.
+  // Table up to an angle, from the cache or traced; prints its origin.
   std::shared_ptr<const RotationTable> make_table(const Console& console,
                                                   double max_angle_rad) const;
 
-  // Names of the channels' groups as RotationTableError counts them, with their units.
+  // Names and units of the groups of channels, in the order of RotationTableError.
   static constexpr const char* quantities[] = {"torque", "force", "photocurrent", "light on cells"};
   static constexpr const char* units[] = {"N m", "N", "A", "W"};
 
@@ -120,7 +119,7 @@ class LightModel {
   std::vector<Light>
       lights_;  // one per group; with the joint at its rest angle if it follows the Sun
   std::optional<Joint> joint_;  // the moving joint
-  size_t joint_number_ = 0;     // among [[joint]]
+  size_t joint_number_ = 0;     // index among [[joint]]
   std::optional<JointPositions> positions_;
   RunOptions options_;
   std::optional<ArrayDesign> array_;
@@ -129,7 +128,7 @@ class LightModel {
   std::vector<double> cell_area_m2_;
   std::optional<Vec3> sun_direction_lab_;
   std::vector<std::pair<std::string, std::string>> inputs_;
-  double sun_angle_rad_ = 0.0;  // from the vertical; 0: the Sun is not the only light
+  double sun_angle_rad_ = 0.0;  // from the vertical; 0 if the Sun is not the only light
   double max_angle_rad_ = 0.0;
   std::string key_;
 };

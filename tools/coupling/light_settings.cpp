@@ -35,7 +35,7 @@ constexpr TablesKey switch_key("switch", "lamps are switched on or off at one ti
 constexpr TableKey light("light", "light in a run of the motion");
 }  // namespace light_key
 
-// Folder for files that can be recomputed (freedesktop.org, XDG Base Directory Specification).
+// Cache folder of the user (freedesktop.org, XDG Base Directory Specification).
 std::optional<std::filesystem::path> user_cache() {
   const char* own = std::getenv("XDG_CACHE_HOME");
   if (own != nullptr && *own != '\0') return std::filesystem::path(own) / "photorque";

@@ -20,7 +20,7 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
   details.line(std::to_string(run.model.disturbances.size()) + " disturbances");
   for (const Disturbance& disturbance : run.model.disturbances)
     details.line("  " + disturbance.kind);
-  // A run in light prints its energies instead.
+  // Runs with light and power print their energies instead.
   const Console motion = coupled.beside ? details : console;
   console.heading("Trajectory");
   const PlatformState& end = result.states.back();
@@ -33,7 +33,7 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
                " deg at " + show_duration(figure("largest_tilt_time_s")));
   motion.line("  " + padded("yaw excursion", 24) + show_brief(figure("yaw_excursion_deg")) +
               " deg between smallest and largest yaw");
-  // The lowest bar of the fractions is the strongest torque.
+  // The last curve of the fractions is the strongest torque.
   const auto fractions = std::ranges::find(result.product.plots, "torque_fractions", &Plot::name);
   if (fractions != result.product.plots.end() && !fractions->curves.empty()) {
     const Plot::Curve& strongest = fractions->curves.back();
@@ -67,7 +67,7 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
   }
 }
 
-// The channels as a recording and the attitudes as CCSDS message.
+// Files: the channels as a recording, and the attitudes as a CCSDS message.
 std::vector<RunFile> trajectory_files(const std::shared_ptr<const PropagationRun>& run,
                                       const std::shared_ptr<const CoupledResult>& coupled,
                                       const std::string& stamp, const std::string& name) {
@@ -75,7 +75,7 @@ std::vector<RunFile> trajectory_files(const std::shared_ptr<const PropagationRun
     write_recording(path, coupled->motion.recording, {stamp});
   };
   const auto attitude = [run, coupled, stamp, name](const std::filesystem::path& path) {
-    // Dated by the trajectory, not by the clock: equal runs give equal files.
+    // The file date is that of the trajectory, so that equal runs give equal files.
     AttitudeEphemeris ephemeris = make_aem(coupled->motion.states, run->epoch, name, run->epoch);
     ephemeris.comments = {stamp};
     write_aem(path, ephemeris);
@@ -83,7 +83,7 @@ std::vector<RunFile> trajectory_files(const std::shared_ptr<const PropagationRun
   return {{"recording.csv", recording}, {"attitude.aem", attitude}};
 }
 
-// Adds the inputs that are missing in the provenance: scene and lamps.
+// Adds inputs that are missing in the provenance: scene and lamps.
 void add_inputs(Provenance& provenance,
                 const std::vector<std::pair<std::string, std::string>>& inputs) {
   for (const auto& input : inputs) {
@@ -105,7 +105,7 @@ void add_light(const Console& console, const CoupledResult& coupled, const Propa
   append(product, power_product(*coupled.beside, product, run.history_rows));
 }
 
-// All that a run follows from but the light, to identify its checkpoint.
+// Identity of a run for its checkpoint: all inputs except the light.
 std::string identity(const Provenance& provenance,
                      const std::vector<std::pair<std::string, std::string>>& seen) {
   return table_cache_version() + "seed " + std::to_string(provenance.seed) + "\n" +

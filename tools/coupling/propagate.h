@@ -1,4 +1,4 @@
-// The platform through its disturbances, in the light of its scene where there is one.
+// Motion of the platform under its disturbances and in the light of its scene, if it has one.
 #pragma once
 
 #include <functional>
@@ -19,15 +19,15 @@ struct MotionRun {
   RunResult result;  // its files: recording.csv, attitude.aem
 };
 
-// Torques that act besides those of the experiment, and their text in the provenance.
+// Torques in addition to those of the experiment, and their provenance.
 struct FurtherTorques {
   std::vector<Disturbance> disturbances;
   std::vector<std::pair<std::string, std::string>> inputs;  // name, hash
 };
 
-// `prepare` may change the run that was read from the experiment before it starts. With a
-// checkpoint file, the run continues from the state of an equal run: the same program, experiment,
-// overrides, seed and files. InputError for the checkpoint of another run.
+// `prepare` may change the run before it starts. With a checkpoint file, the run continues from the
+// state of an equal run: the same program, experiment, overrides, seed and files. Throws InputError
+// for the checkpoint of another run.
 MotionRun run_propagate(
     const RunOptions& options, const Console& console, const FurtherTorques& further = {},
     const std::function<void(const Settings& root, PropagationRun& run)>& prepare = {},

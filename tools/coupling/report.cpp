@@ -12,7 +12,7 @@ namespace {
 struct EnergyRow {
   std::string name;
   double energy_J;
-  bool is_detail = false;  // printed with --verbose alone
+  bool is_detail = false;  // printed only with --verbose
 };
 
 // The rows of the energy balance.

@@ -1,4 +1,4 @@
-// The results of a run in light, as figures, tables, plots and text.
+// Results of a run with light as figures, tables, plots and text.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,16 @@
 
 namespace photorque {
 
-// Table "light_table": how well the table of light interpolates, at fresh attitudes.
+// Table "light_table": interpolation error of the table of light at attitudes outside the table.
 Product table_product(const RotationTable& table);
 void print_light_table(const Console& console, const RotationTable& table);
 
 // Tables "power" (at most `max_rows` rows) and "energy_balance", the energies, and the plot
-// "power_and_attitude": power, charge, tilt and torque of light over one time axis, where `history`
+// "power_and_attitude" with power, charge, tilt and torque of light over one time axis. `history`
 // is the product of the motion.
 Product power_product(const CoupledRun& run, const Product& history, size_t max_rows);
 void print_power(const Console& console, const CoupledRun& run);
-// A warning of cells that were warmer than they are rated; none where they were not.
+// Warning for cells above their rated temperature; empty if there are none.
 std::optional<std::string> hot_cells(const CoupledRun& run);
 
 // Pointing stability of the body's z axis, from the true attitudes at equal intervals.

@@ -17,7 +17,8 @@ std::filesystem::path file_of(const std::filesystem::path& folder, const std::st
 }  // namespace
 
 std::string table_cache_version() {
-  // The code itself, which a version does not identify while it is being worked on.
+  // Contains a hash of the program file, because a version does not identify code under
+  // development.
   return format + build_provenance().version + " " + content_hash(read_file(own_file())) + "\n";
 }
 

@@ -1,4 +1,4 @@
-// Tables of light on disk, by the content of everything that they were made from.
+// Stored tables of light, identified by all inputs of their computation.
 #pragma once
 
 #include <filesystem>
@@ -11,18 +11,18 @@
 
 namespace photorque {
 
-// The part of a key that belongs to the program: its format of tables, version and own bytes.
+// Part of a key that identifies the program: table format, version and hash of the program file.
 std::string table_cache_version();
 
-// A value as text, equal for equal values (3 is 3.0); without the named keys of the top level.
-// `behind` adds what a text of the tree names.
+// A value as text that is equal for equal values (3 equals 3.0). Keys in `without` are omitted at
+// the top level. `behind` appends the content of files that texts of the tree name.
 std::string canonical_text(const SettingsNode& node, const std::set<std::string>& without = {},
                            const std::function<std::string(const std::string& text)>& behind = {});
 
-// False where there is none or the file is damaged.
+// Returns false if there is no such file or it is damaged.
 bool read_cached_table(const std::filesystem::path& folder, const std::string& key,
                        RotationTable& table);
-// Whole or not at all. False where the folder cannot be written.
+// Writes the file completely or not at all. Returns false if the folder is not writable.
 bool write_cached_table(const std::filesystem::path& folder, const std::string& key,
                         const RotationTable& table);
 

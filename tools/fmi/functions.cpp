@@ -1,4 +1,4 @@
-// The functions of FMI 3.0, all of which a unit for co-simulation has to export.
+// The functions of FMI 3.0. A co-simulation unit must export all of them.
 #include <string>
 
 #include "tools/fmi/instance.h"
@@ -124,7 +124,8 @@ PHOTORQUE_EXPORT fmi3Status fmi3DeserializeFMUState(fmi3Instance handle, const f
   return guarded(handle, __func__, &Instance::read_state, bytes, size, to);
 }
 
-// The functions that the unit does not offer: they return fmi3Error. Importers look for every name.
+// Functions that the unit does not support: they return fmi3Error. They must exist, because
+// importers look up every name.
 #define PHOTORQUE_ABSENT(name)                                               \
   PHOTORQUE_EXPORT fmi3Status name(fmi3Instance handle) {                    \
     return guarded(handle, #name, [](Instance& instance) {                   \

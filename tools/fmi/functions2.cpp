@@ -1,6 +1,6 @@
-// The functions of FMI 2.0, all of which a unit for co-simulation has to export. Types, values and
-// order of the arguments are those of the specification (Functional Mock-up Interface for Model
-// Exchange and Co-Simulation 2.0.4, sections 2.1 and 4.2).
+// The functions of FMI 2.0. A co-simulation unit must export all of them. Types, values and order
+// of the arguments are those of the specification (Functional Mock-up Interface for Model Exchange
+// and Co-Simulation 2.0.4, sections 2.1 and 4.2).
 #include <cstdarg>
 #include <memory>
 #include <string>
@@ -20,7 +20,7 @@ using fmi2Real = double;
 using fmi2Boolean = int;
 using fmi2String = const char*;
 using fmi2Byte = char;
-// The first five have the values of fmi3Status; fmi2Pending is not used.
+// The first five values are those of fmi3Status; fmi2Pending is not used.
 using fmi2Status = int;
 enum fmi2Type { fmi2ModelExchange, fmi2CoSimulation };
 enum fmi2StatusKind { fmi2DoStepStatus, fmi2PendingStatus, fmi2LastSuccessfulTime, fmi2Terminated };
@@ -36,7 +36,7 @@ struct fmi2CallbackFunctions {
 
 namespace {
 
-// An instance, and the data that FMI 2.0 exchanges apart from a step.
+// An instance with additional data of FMI 2.0.
 struct Unit2 {
   std::unique_ptr<Instance> instance;
   double start_s = 0.0;
@@ -51,14 +51,14 @@ fmi2Status guarded2(fmi2Component handle, const char* function, Body body) {
   return guarded(unit->instance.get(), function, [&](Instance&) { return body(*unit); });
 }
 
-// guarded() of the instance.
+// Calls guarded() for the instance.
 template <typename... Rest>
 fmi2Status of_instance(fmi2Component handle, const char* function, Rest... rest) {
   auto* unit = static_cast<Unit2*>(handle);
   return guarded(unit == nullptr ? nullptr : unit->instance.get(), function, rest...);
 }
 
-// "file:///a%20b", "file:/a b" and "file://localhost/a b" as the path "/a b". Null: no such
+// Path "/a b" from "file:///a%20b", "file:/a b" or "file://localhost/a b". Null for another kind of
 // address.
 std::optional<std::string> path_of(std::string_view location) {
   constexpr std::string_view scheme = "file:", host = "//localhost/", no_host = "///";
@@ -72,7 +72,7 @@ std::optional<std::string> path_of(std::string_view location) {
   return percent_decoded(location);
 }
 
-// The logger takes a format of printf.
+// Escapes a message for the logger, which expects a printf format.
 std::string as_format(const char* message) {
   std::string format;
   for (const char* c = message; *c != '\0'; ++c) {
@@ -163,8 +163,8 @@ PHOTORQUE_EXPORT fmi2Status fmi2Reset(fmi2Component handle) {
   });
 }
 
-// Where the platform reaches its stop, the step ends early: fmi2Discard, and fmi2Terminated is
-// true.
+// If the platform reaches its stop, the step ends early: the result is fmi2Discard, and
+// fmi2Terminated is true.
 PHOTORQUE_EXPORT fmi2Status fmi2DoStep(fmi2Component handle, fmi2Real now_s, fmi2Real step_s,
                                        fmi2Boolean) {
   return guarded2(handle, "fmi2DoStep", [&](Unit2& unit) {
@@ -239,7 +239,8 @@ PHOTORQUE_EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component handle, const 
   return of_instance(handle, __func__, &Instance::read_state, bytes, size, to);
 }
 
-// The functions that the unit does not offer: they return fmi2Error. Importers look for every name.
+// Functions that the unit does not support: they return fmi2Error. They must exist, because
+// importers look up every name.
 #define PHOTORQUE_ABSENT2(name)                                                    \
   PHOTORQUE_EXPORT fmi2Status name(fmi2Component handle) {                         \
     return guarded2(handle, #name, [](Unit2& unit) {                               \
@@ -258,7 +259,7 @@ PHOTORQUE_ABSENT2(fmi2CancelStep)
 PHOTORQUE_ABSENT2(fmi2GetStatus)
 PHOTORQUE_ABSENT2(fmi2GetIntegerStatus)
 PHOTORQUE_ABSENT2(fmi2GetStringStatus)
-// Functions of model exchange.
+// Functions of model exchange, which the unit does not support.
 PHOTORQUE_ABSENT2(fmi2EnterEventMode)
 PHOTORQUE_ABSENT2(fmi2NewDiscreteStates)
 PHOTORQUE_ABSENT2(fmi2EnterContinuousTimeMode)

@@ -11,7 +11,8 @@
 namespace photorque::fmi {
 namespace {
 
-// resources/unit: the token, the experiment's path from there, and whether it has light.
+// Content of resources/unit: the token, the relative path of the experiment, and whether it has
+// light.
 struct Resources {
   std::string token;
   RunOptions options;
@@ -25,7 +26,7 @@ Resources read_resources(const std::filesystem::path& folder) {
   std::getline(lines, experiment);
   std::getline(lines, has_light);
   resources.options.experiment = folder / experiment;
-  // Where the table of light lies that came with the unit.
+  // Folder of the table of light in the unit.
   if (has_light == "light") {
     resources.options.overrides.push_back("light.cache=\"" + (folder / "light").string() + "\"");
   }
@@ -45,7 +46,7 @@ std::vector<double> UnitState::numbers() const {
 std::unique_ptr<UnitState> UnitState::from(const void* bytes, size_t size) {
   std::vector<double> all(size / sizeof(double));
   std::memcpy(all.data(), bytes, all.size() * sizeof(double));
-  // Some importers hand the bytes on as a text, with one that ends it.
+  // Some importers pass the bytes as a text with a terminating zero byte.
   bool is_right = all.size() >= 7 && all.size() % 3 == 1 && size % sizeof(double) <= 1;
   for (const double value : all) is_right = is_right && std::isfinite(value);
   if (!is_right || !(all[0] >= 0.0 && all[0] <= 3.0)) return nullptr;

@@ -1,4 +1,4 @@
-// An instance of the unit, as an importer holds it: what the functions of FMI 2.0 and 3.0 do.
+// An instance of the unit: implementation of the functions of FMI 2.0 and 3.0.
 #pragma once
 
 #include <exception>
@@ -11,7 +11,7 @@
 #include "tools/fmi/standard.h"
 #include "tools/fmi/unit.h"
 
-// Functions that an importer may call.
+// Exports a function for importers.
 #define PHOTORQUE_EXPORT extern "C" __attribute__((visibility("default")))
 
 namespace photorque::fmi {
@@ -20,34 +20,35 @@ enum class Mode { instantiated, initialization, step, terminated };
 
 using LogSink = std::function<void(fmi3Status status, const char* category, const char* message)>;
 
-// A state is the list of commands: the run is recomputed to its time.
+// A state is the list of commands: restoring it repeats the run up to its time.
 struct UnitState {
   Mode mode = Mode::instantiated;
   double now_s = 0.0, start_s = 0.0, stop_s = 0.0;
   Vec3 command_body_N_m = Vec3::Zero();
   std::vector<Vec3> commands;
 
-  // Mode, three times, the command, then every command so far; doubles of this machine.
+  // Mode, three times, the command, then all commands so far, as doubles in the format of this
+  // machine.
   std::vector<double> numbers() const;
-  // Null where these bytes are no state.
+  // Null if the bytes are not a valid state.
   static std::unique_ptr<UnitState> from(const void* bytes, size_t size);
 };
 
 class Instance {
  public:
-  // `resources`: the folder of that name in the unit. InputError and NumericalError for a wrong
-  // token and an experiment that cannot run.
+  // `resources`: the folder of that name in the unit. Throws InputError or NumericalError for a
+  // wrong token or an experiment that cannot run.
   Instance(const std::string& resources, const std::string& token, bool logs_events, LogSink log);
 
   fmi3Status enter_initialization(double start_s, std::optional<double> stop_s);
   fmi3Status exit_initialization();
   fmi3Status terminate();
   fmi3Status reset();
-  // `ended`: the platform has reached its stop, at now_s().
+  // `ended` is set if the platform has reached its stop, at now_s().
   fmi3Status step(double now_s, double step_s, bool& ended);
   fmi3Status get_numbers(std::span<const uint32_t> references, double* values) const;
   fmi3Status set_numbers(std::span<const uint32_t> references, const double* values);
-  // `Flag`: the Boolean of the version.
+  // `Flag`: the Boolean type of the FMI version.
   template <typename Flag>
   fmi3Status get_flags(std::span<const uint32_t> references, Flag* values) const {
     for (const uint32_t reference : references) {
@@ -58,8 +59,8 @@ class Instance {
     return fmi3OK;
   }
 
-  // States as an importer holds them, pointers to UnitState: save_state() makes one where `*to` is
-  // null, and free_state() deletes it. `function` is named in messages.
+  // States are pointers to UnitState for the importer: save_state() allocates one if `*to` is null,
+  // and free_state() deletes it. `function` is named in messages.
   fmi3Status save_state(void** to) const;
   fmi3Status restore_state(const char* function, const void* from);
   fmi3Status free_state(void** state) const;
@@ -71,15 +72,15 @@ class Instance {
   double now_s() const { return now_s_; }
   fmi3Status set_debug_logging(bool on, size_t count, const char* const categories[]);
   fmi3Status refuse(const std::string& message) const;
-  // No further step is possible.
+  // Makes further steps impossible.
   void give_up() { mode_ = Mode::terminated; }
 
  private:
   void log_message(fmi3Status status, const char* category, const std::string& message) const;
   void log_messages();
-  // Null, and a message, where no flag has the reference.
+  // Null, with a message, if no flag has the reference.
   const bool* flag(uint32_t reference) const;
-  // Restarts the run and follows `commands`.
+  // Restarts the run and repeats `commands`.
   fmi3Status begin(std::vector<Vec3> commands);
 
   LogSink log_;
@@ -91,8 +92,8 @@ class Instance {
   double now_s_ = 0.0, start_s_ = 0.0, stop_s_ = 0.0;
 };
 
-// A member of Instance, or a function of one, called with the arguments. Exceptions may not leave
-// the unit.
+// Calls a member function of Instance, or a function with an Instance argument, with the arguments.
+// Converts exceptions, which must not leave the unit, to a status.
 template <typename Body, typename... Arguments>
 fmi3Status guarded(void* handle, const char* function, Body body, Arguments... arguments) {
   auto* instance = static_cast<Instance*>(handle);
@@ -105,7 +106,8 @@ fmi3Status guarded(void* handle, const char* function, Body body, Arguments... a
   }
 }
 
-// A new instance; null, and a message to `log`, where it cannot be made. Null arguments are errors.
+// Creates an instance. Returns null, with a message to `log`, if this fails. Null arguments are
+// errors.
 Instance* instantiate(const char* function, const char* name, const char* token,
                       const char* resources, bool logs_events, const LogSink& log);
 

@@ -28,7 +28,7 @@ void set_attribute(pugi::xml_node element, const char* name, const std::string& 
   element.append_attribute(name).set_value(value.c_str());
 }
 
-// Shortest text that reads back as the same number.
+// Writes the shortest text that is read back as the same number.
 void set_attribute(pugi::xml_node element, const char* name, double value) {
   set_attribute(element, name, shortest(value));
 }
@@ -48,7 +48,7 @@ constexpr std::string_view log_categories = R"(<LogCategories>
   <Category name="logStatusError" description="what went wrong"/>
 </LogCategories>)";
 
-// In FMI 3.0 the type is the variable's element, in 2.0 an element within.
+// In FMI 3.0 the type is the name of the variable's element, in 2.0 that of a child element.
 void append_variable(pugi::xml_node variables, const UnitVariable& variable,
                      const UnitDescription& unit, bool is_2) {
   using Kind = UnitVariable::Kind;
@@ -76,8 +76,8 @@ void append_variable(pugi::xml_node variables, const UnitVariable& variable,
   }
 }
 
-// Outputs at a tick depend on no input at that tick. FMI 3.0 names them by reference, 2.0 by their
-// place among the variables, from 1.
+// Outputs at a tick do not depend on inputs at that tick. FMI 3.0 lists them by reference, 2.0 by
+// their position among the variables, from 1.
 void append_structure(pugi::xml_node root, const UnitDescription& unit, bool is_2) {
   pugi::xml_node structure = root.append_child("ModelStructure");
   for (const std::string name : {"Output", "InitialUnknown"}) {
@@ -96,8 +96,8 @@ void append_structure(pugi::xml_node root, const UnitDescription& unit, bool is_
   }
 }
 
-// modelDescription.xml of this version of FMI: `name` of the model, `token` that a unit is
-// instantiated with, `tool` that made it.
+// Text of modelDescription.xml for this version of FMI. `name` is the name of the model, `token`
+// the instantiation token, `tool` the generating program.
 std::string model_description(FmiVersion version, const UnitDescription& unit,
                               const std::string& name, const std::string& token,
                               const std::string& tool) {
@@ -136,11 +136,11 @@ std::string model_description(FmiVersion version, const UnitDescription& unit,
   return text.str();
 }
 
-// Writes a ZIP archive of files (name with '/', bytes) in this order. All have one date, so that
-// equal files give equal bytes.
+// Writes a ZIP archive of files (name with '/', bytes) in this order. All have the same date, so
+// that equal files give equal bytes.
 void write_archive(const fs::path& path,
                    const std::vector<std::pair<std::string, std::string>>& files) {
-  constexpr uLong first_day = 0x21UL << 16;  // 1 January 1980 at midnight, as MS-DOS writes it
+  constexpr uLong first_day = 0x21UL << 16;  // 1 January 1980 at midnight, in the format of MS-DOS
   constexpr uLong made_on_unix = (3UL << 8) | 20, names_are_utf8 = 1UL << 11;
   constexpr uLong regular_file = 0100644UL << 16;
   constexpr size_t largest_plain = 0xffffffff;  // beyond: the ZIP64 format
@@ -156,7 +156,7 @@ void write_archive(const fs::path& path,
                                 Z_DEFLATED, Z_DEFAULT_COMPRESSION, 0, -MAX_WBITS, DEF_MEM_LEVEL,
                                 Z_DEFAULT_STRATEGY, nullptr, 0, made_on_unix, names_are_utf8,
                                 bytes.size() >= largest_plain ? 1 : 0) == ZIP_OK;
-    // The size of one write is an unsigned int.
+    // The size of one write is limited to an unsigned int.
     constexpr size_t at_once = size_t{1} << 30;
     for (size_t done = 0; is_written && done < bytes.size(); done += at_once) {
       const size_t size = std::min(at_once, bytes.size() - done);
@@ -171,7 +171,7 @@ void write_archive(const fs::path& path,
   }
 }
 
-// The library is beside the program or in its installation folder.
+// The library must be beside the program or in its installation folder.
 fs::path unit_library() {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
   for (const fs::path& place : {program, program / PHOTORQUE_UNIT_FOLDER}) {
@@ -181,7 +181,7 @@ fs::path unit_library() {
   throw InputError({program.string()}, "", "no photorque_fmu.so", "the library beside the program");
 }
 
-// A folder that goes when it is not needed any more.
+// A temporary folder that is removed by the destructor.
 struct StagingFolder {
   fs::path path;
   StagingFolder() {
@@ -199,7 +199,7 @@ struct StagingFolder {
   StagingFolder& operator=(const StagingFolder&) = delete;
 };
 
-// Texts that name files name them from the experiment's own folder, wherever they stood.
+// Changes file names in texts so that the files are in the experiment's folder of the unit.
 void name_beside(SettingsNode& node, const fs::path& folder) {
   if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
     for (auto& [key, item] : *table) name_beside(item, folder);
@@ -246,7 +246,7 @@ void copy_resources(const RunOptions& options, const fs::path& resources,
                                            (has_lit_scene(root) ? "light" : "dark") + "\n");
 }
 
-// Loads the unit as an importer would and makes one step, which also makes its table of light.
+// Loads the unit as an importer does and makes one step, which also creates its table of light.
 void try_unit(const Console& console, const fs::path& library, const std::string& token,
               const fs::path& resources, double tick_s) {
   const std::unique_ptr<void, int (*)(void*)> loaded(
@@ -294,7 +294,7 @@ void try_unit(const Console& console, const fs::path& library, const std::string
   if (!works) throw NumericalError("the unit does not work: " + messages.error);
 }
 
-// All files below a folder, in order of their names.
+// All files below a folder, sorted by name.
 std::vector<std::pair<std::string, std::string>> files_below(const fs::path& folder) {
   std::vector<std::pair<std::string, std::string>> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {

@@ -9,9 +9,10 @@ namespace photorque {
 
 enum class FmiVersion { two, three };
 
-// NAME.fmu: modelDescription.xml, the library, the experiment with its overrides and every file
-// that it names, and the table of its light, which is made here. The unit is loaded and stepped
-// once before it is packed. InputError where the experiment cannot run or a file is missing.
+// Writes NAME.fmu: modelDescription.xml, the library, the experiment with its overrides, every file
+// that it names, and the table of its light. Before it is packed, the unit is loaded and makes one
+// step, which also computes this table. Throws InputError if the experiment cannot run or a file is
+// missing.
 RunResult pack_unit(const RunOptions& options, const Console& console, FmiVersion version);
 
 }  // namespace photorque

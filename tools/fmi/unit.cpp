@@ -16,7 +16,7 @@ namespace {
 constexpr uint32_t first_flag_reference =
     first_output_reference + static_cast<uint32_t>(UnitOutputs::numbers);
 
-// The index of the first number of each quantity.
+// Index of the first number of each quantity.
 enum Place : uint32_t {
   place_attitude = 0,
   place_gyro = 4,
@@ -159,14 +159,14 @@ void CoSimulation::begin(double start_s, double stop_s, std::vector<Vec3> comman
   await_tick();
 }
 
-// In the thread.
+// Runs in the separate thread.
 void CoSimulation::run(double start_s, double stop_s) {
   try {
     const auto prepare = [&](const Settings&, PropagationRun& propagation) {
       propagation.output_rate_Hz = propagation.options.tick_rate_Hz = rate_Hz_;
       propagation.model.schedule = {};
       propagation.initial.time_s = start_s;
-      // One tick more than is asked for, so that the last is a tick as well.
+      // One tick more than required, so that the last instant is a tick, too.
       propagation.duration_s = std::max(0.0, stop_s - start_s) + 1.5 / rate_Hz_;
       propagation.history_rows = 2;
       propagation.commander = [this](const LiveRow& row) { return at_tick(row); };
@@ -185,7 +185,7 @@ void CoSimulation::run(double start_s, double stop_s) {
   changed_.notify_all();
 }
 
-// In the thread: the commands from this tick on.
+// Called in the separate thread: returns the commands from this tick on.
 ZeroOrderHold CoSimulation::at_tick(const LiveRow& row) {
   outputs_.take(row);
   tick_s_ = row.time_s;

@@ -17,25 +17,26 @@ namespace photorque {
 
 struct UnitVariable {
   enum class Kind { time, input, output, flag };
-  uint32_t reference = 0;  // the standard's handle
+  uint32_t reference = 0;  // value reference of the FMI standard
   std::string name;        // as the columns of recording.csv and time_history.csv
   Kind kind = Kind::output;
-  std::string unit;  // of modelDescription.xml; empty: a pure number
+  std::string unit;  // as in modelDescription.xml; empty: a pure number
   std::string meaning;
-  std::string old_name = {};  // under which a program may still ask for it
+  std::string old_name = {};  // earlier name that is still accepted
 };
 
-// References of the standard; outputs follow in the order of UnitOutputs::values.
+// Value references; outputs follow in the order of UnitOutputs::values.
 constexpr uint32_t time_reference = 0, first_input_reference = 1, first_output_reference = 10;
 
-// All variables, except those of instruments that the platform lacks.
+// All variables except those of instruments that the platform lacks.
 std::vector<UnitVariable> unit_variables(const Sensors& sensors);
 
-// The outputs at a tick. Readings that come less often than ticks are held in between.
+// Outputs at a tick. Readings with a lower rate than the ticks are held in between.
 class UnitOutputs {
  public:
   static constexpr size_t numbers = 17, flags = 2;
 
+  // Takes the outputs of a tick.
   void take(const LiveRow& row);
   // The output with this reference; null if there is none.
   const double* number(uint32_t reference) const;
@@ -48,19 +49,20 @@ class UnitOutputs {
 
 // The platform as a co-simulation unit: a run of `propagate` that waits at every tick.
 
-// The experiment described as a unit.
+// Properties of an experiment as a unit.
 struct UnitDescription {
   double rate_Hz = 0.0;  // ticks: [serve] rate_Hz
   double max_torque_N_m = 0.0;
-  double start_s = 0.0, stop_s = 0.0;  // [propagate] initial_time_s, and duration_s after it
+  // [propagate] initial_time_s, and the end of the duration_s after it
+  double start_s = 0.0, stop_s = 0.0;
   std::vector<UnitVariable> variables;
 };
-// InputError for errors of the experiment's platform.
+// Throws InputError for errors in the platform of the experiment.
 UnitDescription describe_unit(const RunOptions& options);
 
-// One run. The propagation continues in a separate thread, which waits for every command, so it is
-// the same computation as that of `serve` in lockstep and of `propagate`: what a
-// command does depends on nothing but the ticks.
+// One run. The propagation runs in a separate thread, which waits for every command. The
+// computation is the same as in `serve` in lockstep and in `propagate`: the effect of a command
+// depends only on the ticks.
 class CoSimulation {
  public:
   CoSimulation(RunOptions options, double rate_Hz);
@@ -68,21 +70,22 @@ class CoSimulation {
   CoSimulation(const CoSimulation&) = delete;
   CoSimulation& operator=(const CoSimulation&) = delete;
 
-  // Begins at `start_s`; commands beyond `stop_s` are not possible. Commands of an earlier run may
-  // be given, which are followed to the end before this returns. InputError and NumericalError of
-  // the run come out here and of advance_to(), and end it.
+  // Begins at `start_s`; commands after `stop_s` are not possible. `commands` of an earlier run are
+  // applied first, before the function returns. InputError and NumericalError of the run are thrown
+  // here and by advance_to(), and end it.
   void begin(double start_s, double stop_s, std::vector<Vec3> commands = {});
-  // Holds the command over all ticks before `time_s`, until the last tick at or before it.
+  // Applies the command at all ticks before `time_s`, and advances to the last tick at or before
+  // it.
   void advance_to(double time_s, const Vec3& command_body_N_m);
 
   const UnitOutputs& outputs() const { return outputs_; }
   // Time of the last tick, or of the end of the run if this is earlier (tilt limit).
   double tick_s() const { return tick_s_; }
-  // The platform has reached its stop.
+  // Whether the platform has reached its stop.
   bool ended() const { return ended_; }
   // Commands of all ticks so far.
   const std::vector<Vec3>& commands() const { return commands_; }
-  // Messages of the run since the last call, a line each.
+  // Messages of the run since the last call, one per line.
   std::vector<std::string> take_messages();
 
  private:
@@ -97,13 +100,13 @@ class CoSimulation {
   std::thread thread_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  // Only the thread whose turn it is may access the members below.
+  // The members below may be accessed only by the thread whose turn it is.
   Turn turn_ = Turn::importer;
   bool abandoned_ = false, ended_ = false;
   std::exception_ptr failure_;
   UnitOutputs outputs_;
   double tick_s_ = 0.0;
-  size_t given_ = 0;  // commands that are known beforehand
+  size_t given_ = 0;  // number of commands known in advance
   std::vector<Vec3> commands_;
   std::vector<std::string> words_;
 };

@@ -13,7 +13,7 @@ std::string quoted(const std::string& word) {
   return "`\"" + word + "\"`";
 }
 
-// Large counts as powers.
+// A count as text; large powers of two as "2^n".
 std::string count_in_words(int64_t count) {
   constexpr int64_t short_enough = 1 << 20;
   if (count < short_enough) return std::to_string(count);

@@ -12,7 +12,7 @@
 namespace photorque {
 namespace {
 
-// Within a cell of a table.
+// Escapes a text for a table cell.
 std::string in_cell(std::string text) {
   for (size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) {
     if (at > 0 && text[at - 1] == '\\') continue;
@@ -21,11 +21,11 @@ std::string in_cell(std::string text) {
   return text;
 }
 
-// A row of the table, and the rows of the keys in it: of a table, or of a choice that brings keys.
+// A row of the table with the rows below it: keys of a table, or of a choice that adds keys.
 struct Row {
   std::string name, otherwise, range, what;
-  bool indents = true;   // its rows stand one step to the right
-  bool is_kind = false;  // a choice that brings keys
+  bool indents = true;   // its rows are indented by one step
+  bool is_kind = false;  // a choice that adds keys
   std::vector<Row> rows = {};
 };
 
@@ -47,11 +47,12 @@ class KeyTable {
   }
 
  private:
-  // The rows of one table or choice that has been printed, with their depth below it.
+  // Rows of a printed table or choice, with their depth below it.
   struct Group {
     std::string label;
     std::vector<std::pair<int, std::string>> lines;
-    std::vector<Row> full = {};  // without rows below them, and printed with their meaning
+    // Rows that have no rows below them and were printed with their meaning.
+    std::vector<Row> full = {};
   };
 
   static std::string cells(const Row& row) {
@@ -92,7 +93,7 @@ class KeyTable {
     return row;
   }
 
-  // The choices of a key, each with the keys that it brings.
+  // The choices of a key, each with the keys that it adds.
   std::vector<Row> kinds_of(const Key& key, bool is_top) const {
     std::vector<Row> rows;
     for (const Key::Choice& choice : key.choices) {
@@ -109,8 +110,8 @@ class KeyTable {
     return rows;
   }
 
-  // Choices that have several keys in common: each choice names its keys, and rows of all keys
-  // follow once.
+  // Choices with several common keys: each choice lists the names of its keys, and the rows of all
+  // keys follow once.
   static std::vector<Row> with_shared_rows(const std::vector<Row>& choices) {
     std::vector<Row> named, keys;
     size_t all = 0;
@@ -137,8 +138,9 @@ class KeyTable {
     return named;
   }
 
-  // Rows of one level. Rows that an earlier kind or table has are named in one row, as are
-  // neighbours with the same default, range and meaning. `above`: the rows of the top level.
+  // Prints rows of one level. Rows that occur in an earlier kind or table are only listed by name
+  // in one row, as are neighbours with equal default, range and meaning. `above`: the rows of the
+  // top level.
   void print_all(std::span<const Row> rows, int depth, const std::string& owner, Group* above,
                  Group* group = nullptr) {
     for (size_t i = 0; i < rows.size();) {
@@ -173,8 +175,8 @@ class KeyTable {
     return found == group.full.end() ? nullptr : &*found;
   }
 
-  // The printed group that has the most of the first `rows`, and how many: with their defaults, or
-  // all with one other default.
+  // The printed group that contains the longest sequence of the first `rows`, and its length: with
+  // equal defaults, or all with one other default.
   std::pair<const Group*, size_t> repetition(std::span<const Row> rows) const {
     std::pair<const Group*, size_t> longest{nullptr, 0};
     for (const Group& group : groups_) {
@@ -200,8 +202,8 @@ class KeyTable {
     printed_ += cells(row);
   }
 
-  // `owner`: the kind that the row belongs to, empty outside of kinds. `above`: the rows of the
-  // top level that have been printed.
+  // `owner`: the kind to which the row belongs, empty outside kinds. `above`: the printed rows of
+  // the top level.
   void print(const Row& row, int depth, const std::string& owner, const Group* above) {
     std::vector<std::pair<int, std::string>> lines;
     for (const Row& inner : row.rows) append(inner, row.indents ? 1 : 0, lines);
@@ -222,7 +224,7 @@ class KeyTable {
     groups_.push_back(std::move(group));
   }
 
-  // The printed group that has all of `lines` in their order.
+  // The printed group that contains all of `lines` in their order.
   const Group* group_with(const std::vector<std::pair<int, std::string>>& lines,
                           const Group* above) const {
     const auto holds = [&](const Group& group, int deeper) {
@@ -258,7 +260,7 @@ const Key& table_at(const std::vector<Key>& tables, const std::string& path,
   throw InputError({file}, "keys " + path, "no such table", "a table of an experiment");
 }
 
-// `document` with the text between "<!-- NAME begin -->" and "<!-- NAME end -->" replaced.
+// Replaces the text between "<!-- NAME begin -->" and "<!-- NAME end -->" of a document.
 std::string with_section(const std::string& document, const std::string& name,
                          const std::string& text, const std::string& file) {
   const std::string begin = "<!-- " + name + " begin -->\n", end = "<!-- " + name + " end -->";

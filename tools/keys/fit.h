@@ -1,4 +1,4 @@
-// [fit], which the verb `fit-cell` reads.
+// The table [fit] of the command `fit-cell`.
 #pragma once
 
 #include "core/settings/typed_keys.h"

@@ -50,7 +50,8 @@ Key effect_table() {
       "an effect on light or power, for example of a diagnosis");
 }
 
-// Every number of the table, and of those in it, may have an error (scenes/experiment/uncertain.h).
+// Marks every number of the table and its sub-tables as one that may have an error
+// (scenes/experiment/uncertain.h).
 Key with_errors(Key key) {
   const bool is_number = key.type == Key::Type::number || key.type == Key::Type::numbers ||
                          key.type == Key::Type::vector;
@@ -62,7 +63,7 @@ Key with_errors(Key key) {
   return key;
 }
 
-// The keys of an array that a diagnosis of light may vary; days, trackers and reports have no
+// Marks the keys of an array that a diagnosis of light may vary; days, trackers and reports have no
 // errors.
 Key with_errors_of_cells(Key array) {
   static const std::set<std::string> known = {

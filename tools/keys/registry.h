@@ -1,5 +1,5 @@
-// All keys of an experiment, and what is made from them: a JSON Schema (draft 7), which editors of
-// TOML complete and check with, the tables of the documents, and texts about a key.
+// All keys of an experiment, and outputs made from them: a JSON Schema (draft 7) for completion and
+// checks in TOML editors, the tables of the documents, and texts about a key.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace photorque {
 
-// The tables of an experiment, in the order in which documents show them.
+// Tables of an experiment in the order of the documents.
 std::vector<Key> experiment_keys();
 
 // The schema of a file with these tables. The descriptions contain units, ranges and defaults. Any
@@ -21,26 +21,27 @@ std::vector<Key> experiment_keys();
 // not evaluate conditions when it completes and shows keys.
 std::string json_schema(const std::vector<Key>& tables);
 
-// A document with its tables of keys replaced, the text between the lines
+// Replaces the tables of keys in a document, which are between the lines
 //   <!-- keys WHAT begin -->
 //   <!-- keys WHAT end -->
-// WHAT is the path of a table, `array.day`, and for a table of kinds perhaps some of them, which
-// are then all that is shown: `disturbance static_unbalance mass_shift`. Keys of a table or choice
-// that were printed before are named only. InputError, naming `file`, for a path that no table has.
+// WHAT is the path of a table, such as `array.day`. For a table of kinds it may also list some
+// kinds, and only these are shown: `disturbance static_unbalance mass_shift`. Keys of a table or
+// choice that were printed before are only named. Throws InputError with the name `file` for an
+// unknown path.
 std::string with_key_tables(const std::string& document, const std::vector<Key>& tables,
                             const std::string& file);
 
-// A number in twelve digits, as people write it.
+// A number with twelve digits, without trailing zeros.
 std::string short_number(double x);
 
-// Type, meaning, words of a choice, unit, range and default, one after the other.
+// Type, meaning, values of a choice, unit, range and default as one text.
 std::string description_of(const Key& key);
-// "> 0", "[0, 90]", "1 … 1024", `"grid"`, `"ring"`; empty where every value will do.
+// Range as text: "> 0", "[0, 90]", "1 … 1024", `"grid"`, `"ring"`; empty if every value is allowed.
 std::string range_in_words(const Key& key);
-// The default as TOML, or in words; "required".
+// Default as TOML or as text; "required" if there is none.
 std::string default_in_words(const Key& key);
-// The words of a choice with their meanings: "`\"table\"`: traced once; …"; empty if the meanings
-// only repeat the words.
+// Values of a choice with their meanings: "`\"table\"`: traced once; …"; empty if the meanings only
+// repeat the values.
 std::string choices_in_words(const Key& key);
 
 }  // namespace photorque

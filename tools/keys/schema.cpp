@@ -24,7 +24,7 @@ Json json_of(const SettingsNode& node) {
   return all;
 }
 
-// A number in a unit of the key.
+// Schema of a number in a unit of the key.
 Json number_schema(Range range, double to_SI) {
   Json schema = {{"type", "number"}};
   const auto bound = [&](double SI) { return std::stod(short_number(SI / to_SI)); };
@@ -48,10 +48,11 @@ Json vector_schema() {
   return array_of({{"type", "number"}}, 3);
 }
 
-// Schemas of tables that the schema refers to more than once, by name.
+// Named schemas of tables to which the schema refers more than once.
 class Definitions {
  public:
-  // A reference to the schema, which gets the name or, where that is taken, one with a number.
+  // Reference to a schema with this name; a number is appended if the name belongs to another
+  // schema.
   Json reference(const std::string& name, Json schema) {
     std::string own = name;
     for (int number = 2; all_.contains(own) && all_[own] != schema; ++number) {
@@ -114,7 +115,7 @@ Json plain_schema(const Key& key, double to_SI, Definitions& definitions) {
       return object_schema(key.keys, definitions);
     case Key::Type::tables: {
       const Json one = definitions.reference(key.name, object_schema(key.keys, definitions));
-      // [name] counts as one of [[name]].
+      // A single table [name] is accepted as one of [[name]].
       return {{"anyOf", {{{"type", "array"}, {"items", one}}, one}}};
     }
     case Key::Type::other:
@@ -123,7 +124,7 @@ Json plain_schema(const Key& key, double to_SI, Definitions& definitions) {
   return several_forms(key.forms);
 }
 
-// In the unit that `to_SI` stands for.
+// Schema of a value in the unit with the factor `to_SI`.
 Json value_schema(const Key& key, double to_SI, Definitions& definitions) {
   Json plain = plain_schema(key, to_SI, definitions);
   if (key.has_error) {
@@ -150,7 +151,7 @@ Json described(const Key& key, const KeyUnit& unit, Definitions& definitions) {
   return schema;
 }
 
-// The names that stand for a key: its own, and the same quantity in other units.
+// Accepted names of a key: its own, and those of the same quantity in other units.
 std::vector<std::string> names_of(const Key& key) {
   const KeyUnit own = unit_of_key(key.name);
   std::vector<std::string> names = {key.name};
@@ -161,7 +162,7 @@ std::vector<std::string> names_of(const Key& key) {
   return names;
 }
 
-// The names of a key as a regular expression: "pitch_(m|mm|cm)".
+// Names of a key as a regular expression: "pitch_(m|mm|cm)".
 std::string pattern_of(const Key& key) {
   const KeyUnit own = unit_of_key(key.name);
   if (own.unit.empty()) return key.name;
@@ -169,13 +170,13 @@ std::string pattern_of(const Key& key) {
   return own.stem + "_(" + units + ")";
 }
 
-// The stem of a key, common to all units of its quantity.
+// Identifier of the quantity of a key, common to all its units.
 std::string quantity_of(const Key& key) {
   const KeyUnit unit = unit_of_key(key.name);
   return unit.unit.empty() ? key.name : unit.stem + " of " + unit.dimension;
 }
 
-// Every key that a table can hold, with any of its choices.
+// Every key that a table can contain, with any of its choices.
 void flatten(const std::vector<Key>& keys, std::vector<const Key*>& all) {
   for (const Key& key : keys) {
     all.push_back(&key);
@@ -189,7 +190,7 @@ std::vector<const Key*> flat(const std::vector<Key>& keys) {
   return all;
 }
 
-// The schema of a table.
+// Schema of a table.
 class ObjectSchema {
  public:
   ObjectSchema(const std::vector<Key>& keys, Definitions& definitions)
@@ -216,7 +217,7 @@ class ObjectSchema {
   }
 
  private:
-  // Keys of one quantity whose meaning is independent of the choice.
+  // Whether all keys of this quantity have the same schema in every choice.
   bool is_one(const Key& key) const {
     const std::vector<const Key*>& same = variants_.at(quantity_of(key));
     const double to_SI = unit_of_key(key.name).to_SI;
@@ -231,7 +232,7 @@ class ObjectSchema {
     properties[key.name] =
         one ? described(key, own, definitions_) : Json{{"description", description_of(key)}};
     if (own.unit.empty()) return;
-    // Bounds of zero are the same in all units.
+    // Units with equal schemas (such as bounds of zero) share one entry.
     std::map<std::string, std::string> units_with;  // schema as text → units
     for (const KeyUnit& unit : units_of(own.dimension)) {
       if (unit.unit == own.unit) continue;
@@ -266,7 +267,7 @@ class ObjectSchema {
     return Json::array({{{"anyOf", std::move(instead)}}});
   }
 
-  // Keys that each word of each choice allows and requires.
+  // Keys that each value of each choice allows and requires.
   Json choices(const std::vector<Key>& keys) const {
     Json all = Json::array();
     for (const Key& key : keys) {
@@ -285,7 +286,7 @@ class ObjectSchema {
     Json then = {{"propertyNames", {{"pattern", "^(" + allowed(key, choice) + ")$"}}}};
     Json properties = Json::object(), patterns = Json::object();
     const ObjectSchema inner(choice.keys,
-                             definitions_);  // deeper choices decide their own keys
+                             definitions_);  // keys of deeper choices are handled by those
     for (const Key* own : flat(choice.keys)) {
       if (is_one(*own) || !inner.is_one(*own)) continue;
       const KeyUnit unit = unit_of_key(own->name);
@@ -304,7 +305,7 @@ class ObjectSchema {
     return {{"if", std::move(is_so)}, {"then", std::move(then)}};
   }
 
-  // Keys that a choice requires, unless a key beside it replaces them.
+  // Keys that a choice requires, unless another key replaces them.
   Json completed(const std::vector<Key>& keys, const Key::Choice& choice) const {
     std::vector<Key> own = choice.keys;
     for (const Key& key : keys) {
@@ -313,15 +314,15 @@ class ObjectSchema {
     return required(own);
   }
 
-  // Every name that may stand in the table with this choice: all but those that other choices of
-  // the same key bring.
+  // All names that the table may contain with this choice: all except those that only other choices
+  // of the same key add.
   std::string allowed(const Key& key, const Key::Choice& choice) const {
     std::set<std::string> others, mine;
     for (const Key::Choice& other : key.choices) {
       for (const Key* one : flat(other.keys)) others.insert(quantity_of(*one));
     }
     for (const Key* one : flat(choice.keys)) mine.insert(quantity_of(*one));
-    // Keys known without this key are allowed.
+    // Keys that exist independently of this key are allowed.
     for (const Key& one : keys_) {
       mine.insert(quantity_of(one));
       if (one.name == key.name || holds(one, key)) continue;
@@ -337,7 +338,7 @@ class ObjectSchema {
     return names;
   }
 
-  // Whether `inner` is among the keys that the choices of `outer` bring.
+  // Whether `inner` is among the keys that the choices of `outer` add.
   static bool holds(const Key& outer, const Key& inner) {
     for (const Key::Choice& choice : outer.choices) {
       for (const Key* one : flat(choice.keys)) {

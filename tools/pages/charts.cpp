@@ -23,7 +23,7 @@ std::string name_of(const Alternative& alternative) {
   return name.empty() ? "nothing missing" : name;
 }
 
-// Beside a bar of the length of the best one, only the difference is informative.
+// The length of a bar shows the evidence; the note states the difference to the best alternative.
 std::string note_on(const Alternative& alternative, double best_log_evidence) {
   if (!alternative.remark.empty()) return name_in_text(alternative.remark);
   const double behind = best_log_evidence - alternative.log_evidence_relative;
@@ -55,7 +55,7 @@ std::vector<Plot::Curve> readings_and_models(const ChannelSeries& channel) {
 
 constexpr size_t most_bins_across = 400;
 
-// Coordinates that differ by less than a tenth of the step between neighbours are one.
+// Coordinates that differ by less than 1e-4 of the range count as one.
 std::vector<double> distinct_places(std::vector<double> values) {
   std::ranges::sort(values);
   const double span = values.back() - values.front();
@@ -67,7 +67,8 @@ std::vector<double> distinct_places(std::vector<double> values) {
   return all;
 }
 
-// The places of a scan, or, where they lie on no grid, as many as there are readings.
+// Steps of the positions of a scan. If they do not lie on a grid, the number of steps follows from
+// the number of readings.
 Steps steps_of(const std::vector<double>& values, size_t readings) {
   const std::vector<double> all = distinct_places(values);
   if (all.size() == 1) return {all.front(), 0.01, 1};
@@ -138,7 +139,7 @@ BarChart dependence_chart(const Where& where) {
 
 BarChart ranking_chart(const Diagnosis& d, const std::string& of) {
   constexpr size_t max_bars = 14;
-  // Explanations that the recordings rule out would only flatten the rest.
+  // Alternatives that the recordings rule out would compress the scale for the others.
   constexpr double ruled_out = -50.0;
   BarChart chart{
       "ranking", "Log evidence of the alternatives", "log evidence over “nothing missing”", {}};
@@ -185,7 +186,7 @@ Plot channel_plot(const ChannelSeries& channel, const RecordingSeries& recording
   return plot;
 }
 
-// "tilt 12 deg, heading 60 deg"
+// Text such as "tilt 12 deg, heading 60 deg".
 std::string attitude_words(const Quat& lab_from_body) {
   const Vec3 up = lab_from_body * Vec3::UnitZ();
   const auto whole = [](double angle_rad) {

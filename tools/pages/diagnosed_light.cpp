@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-// Bins of the receiver, as fine as the finest of some scans.
+// Bins of the receiver, as small as the smallest of some scans.
 struct PaintedBins {
   int width = 1, height = 1;
 };
@@ -26,7 +26,7 @@ PaintedBins painted_bins(const std::vector<ScanGroup>& groups, const SurfaceGrid
   return bins;
 }
 
-// A map of a scan laid on the whole receiver: where nothing was read stays empty.
+// A map of a scan extended to the whole receiver; positions without a reading stay empty.
 Map on_receiver(const Map& scan, const SurfaceGrid& grid, const PaintedBins& bins) {
   Map map = scan;
   map.standard_error.clear();
@@ -66,8 +66,8 @@ double rms_off(const ScanGroup& group, const std::vector<double>& model) {
   return std::sqrt(sum / static_cast<double>(group.rows.size()));
 }
 
-// The scene with what was scanned painted on the receiver; nothing where the first receiver of
-// light is no plane.
+// Shows the scene with the scans painted on the receiver. Does nothing if the first receiver of
+// light is not a plane.
 void show_scans(const std::vector<ScanGroup>& groups, const OpticalRun& run, bool found,
                 RunPage& page) {
   const size_t index = run.flux_map_index("");
@@ -106,7 +106,8 @@ void show_scans(const std::vector<ScanGroup>& groups, const OpticalRun& run, boo
   page.stage = std::move(stage);
 }
 
-// Runs: the platform over time in the light of the nominal model, with the power of the array.
+// Shows the runs: the platform over time in the light of the nominal model, with the power of the
+// array.
 void show_runs(const std::vector<RecordingSeries>& runs, const OpticalRun& optics, bool found,
                RunPage& page) {
   constexpr size_t most_states = 1500;
@@ -142,7 +143,7 @@ void show_runs(const std::vector<RecordingSeries>& runs, const OpticalRun& optic
 }
 
 void add_sweeps(const RecordingSeries& recording, bool found, RunPage& page) {
-  constexpr size_t most_sweeps = 24;  // on a page
+  constexpr size_t most_sweeps = 24;  // per page
   for (const int sweep : sweeps_of(*recording.light)) {
     if (page.product.plots.size() == most_sweeps) {
       page.notes.push_back("More curves than " + std::to_string(most_sweeps) +
@@ -153,7 +154,7 @@ void add_sweeps(const RecordingSeries& recording, bool found, RunPage& page) {
   }
 }
 
-// The scene at the attitudes of the sweeps, in the light of the nominal model.
+// Shows the scene at the attitudes of the sweeps, in the light of the nominal model.
 void show_attitudes(const std::vector<RecordingSeries>& sweeps, const OpticalRun& run,
                     RunPage& page) {
   constexpr size_t most_attitudes = 12;
@@ -193,7 +194,7 @@ void show_light(const std::vector<RecordingSeries>& recordings, bool something_w
   for (const RecordingSeries& sweep : sweeps) add_sweeps(sweep, something_was_found, page);
   const bool shows_runs = run != nullptr && scans.empty() && !runs.empty();
   for (size_t r = 0; r < runs.size(); ++r) {
-    // The slider is over the first run alone.
+    // The slider belongs to the first run only.
     std::optional<PlotCursor> cursor;
     if (r == 0 && shows_runs) cursor.emplace();
     add_curves(runs[r], r == 0 ? "" : "_of_run_" + std::to_string(r + 1), cursor, page);

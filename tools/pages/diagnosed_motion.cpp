@@ -25,7 +25,7 @@ std::string rate_channel(int axis) {
   return std::string("gyro_") + "xyz"[axis] + "_rad_s";
 }
 
-// When a recording begins and ends.
+// Start and end of a recording.
 struct Span {
   double from_s = 0.0, to_s = 0.0;
 };
@@ -41,15 +41,15 @@ Span span_of(const RecordingSeries& recording) {
   return span;
 }
 
-// The instants of the attitude, otherwise those of the first channel with readings.
+// Instants of the attitude; without attitude, those of the first channel with readings.
 const std::vector<double>& own_instants(const RecordingSeries& recording) {
   if (!recording.attitude.time_s.empty()) return recording.attitude.time_s;
   return std::ranges::find_if(recording.channels, [](const auto& c) { return !c.time_s.empty(); })
       ->time_s;
 }
 
-// The instants of the slider: those of the one recording, or evenly over the longest of several
-// from the beginning of each.
+// Instants of the slider: those of a single recording, or equally spaced over the longest of
+// several recordings, each from its start.
 std::vector<double> instants(const std::vector<RecordingSeries>& recordings,
                              const std::vector<Span>& spans) {
   const size_t most = std::clamp<size_t>(most_diagnosed_states / recordings.size(), 100, 1500);
@@ -71,7 +71,7 @@ std::vector<double> instants(const std::vector<RecordingSeries>& recordings,
   return at;
 }
 
-// The largest of some lengths, without the wildest one in a hundred.
+// Almost the largest of some lengths: the 99th percentile, without outliers.
 double nearly_largest(std::vector<double> lengths) {
   std::erase_if(lengths, [](double length) { return !std::isfinite(length); });
   if (lengths.empty()) return 0.0;
@@ -90,7 +90,7 @@ std::vector<double> lengths_of(const std::vector<RecordingSeries>& recordings,
   return lengths;
 }
 
-// Factor (1, 2, 5, 10 …) that makes differences visible: they become at most 10 deg, and the noise
+// Factor (1, 2, 5, 10 …) that makes differences visible: differences become at most 10 deg, noise
 // at most 1 deg.
 double enlargement(double largest_rad, double noise_rad) {
   const double most = std::min(10.0 * degree_rad / std::max(largest_rad, 1e-12),
@@ -103,7 +103,7 @@ double enlargement(double largest_rad, double noise_rad) {
   return factor;
 }
 
-// Angles between measurement and models, in body axes, with their errors.
+// Rotation between measurement and a model, in body axes, with its error.
 struct Difference {
   Vec3 body = Vec3::Zero(), error_body = Vec3::Zero();
 };
@@ -130,8 +130,8 @@ void add_attitude_figures(const RecordingSeries& recording, const Quat& q, doubl
   }
 }
 
-// The mean of the rotation vectors near an instant, and its standard error: that from the noise of
-// the camera or from their scatter, whichever is larger.
+// Mean of the rotation vectors near an instant, and its standard error from the noise of the camera
+// or from their scatter, whichever is larger.
 struct MeanRotation {
   Vec3 mean_rad = Vec3::Zero(), error_rad = Vec3::Zero();
 };
@@ -155,7 +155,7 @@ MeanRotation mean_about(const AttitudeSeries& a, const std::vector<Vec3>& off_ra
   return {mean, (variance / count).cwiseMax(scatter).cwiseSqrt() / std::sqrt(count)};
 }
 
-// The slider over several recordings, the second axis of the stage; numbered from 1.
+// Slider over several recordings, the second axis of the stage; numbered from 1.
 StageAxis recording_axis(const std::vector<RecordingSeries>& recordings) {
   StageAxis axis{"recording", "", {}};
   for (const RecordingSeries& recording : recordings) {
@@ -247,7 +247,7 @@ class MotionStage {
   }
 
   void add_difference_arrows(const std::string& unit, double largest) {
-    // Both to one scale, so that the decrease of the residuals is visible.
+    // Both arrows have the same scale, so that the decrease of the residuals is visible.
     const double m_per_unit = largest > 0.0 ? 0.95 * stage_.radius_m / largest : 0.0;
     stage_.arrows.push_back({"measured − nominal", unit, StageArrow::Kind::turn, m_per_unit});
     if (found_) {

@@ -31,7 +31,7 @@ void append_channel(ChannelSeries& to, const ChannelSeries& from) {
   }
 }
 
-// The end of a recording behind its beginning.
+// Appends the held-out end of a recording to its beginning.
 void append_recording(RecordingSeries& to, const RecordingSeries& from) {
   for (size_t c = 0; c < to.channels.size(); ++c) append_channel(to.channels[c], from.channels[c]);
   append_values(to.attitude.time_s, from.attitude.time_s);
@@ -65,7 +65,7 @@ double last_time_s(const RecordingSeries& recording) {
   return last;
 }
 
-// Whether `held` is the part of `recording` that was held out.
+// Whether `held` is the held-out part of `recording`.
 bool is_rest_of(const RecordingSeries& held, const RecordingSeries& recording) {
   return held.is_held_out && !recording.is_held_out && held.recording == recording.recording &&
          held.channels.size() == recording.channels.size() && recording.held_out_s.empty() &&
@@ -73,7 +73,7 @@ bool is_rest_of(const RecordingSeries& held, const RecordingSeries& recording) {
          (held.light || first_time_s(held) > last_time_s(recording));
 }
 
-// The scene with lamps of an experiment that has one; null otherwise.
+// The optical run of an experiment with a scene and lamps; null otherwise.
 std::unique_ptr<OpticalRun> optics_of(const RunOptions& options) {
   const ExperimentFile file =
       read_experiment_text(options.experiment, options.experiment_text(), options.all_overrides());
@@ -126,7 +126,7 @@ Product diagnosis_figures(const Diagnosis& d, bool of_light) {
       add_curves(recordings[r], suffix, std::nullopt, page);
     }
   }
-  for (Plot& plot : page.product.plots) {  // one legend: colours are those of the first panel
+  for (Plot& plot : page.product.plots) {  // the first panel has the legend
     for (Plot::Panel& panel : plot.below) {
       for (Plot::Curve& curve : panel.curves) curve.label.clear();
     }

@@ -16,7 +16,8 @@ PageFigure figure_of(const Quantity& quantity) {
   return {quantity.name, label.name, label.unit, quantity.estimate};
 }
 
-// Rows "stage", "lost_to", "power_W", "lost_W": the remaining power after each loss.
+// Stages from the rows "stage", "lost_to", "power_W", "lost_W": the remaining power after each
+// loss.
 std::vector<PowerStage> stages_of_array(const Table& losses) {
   std::vector<PowerStage> stages;
   const auto& left_W = losses.column("power_W").values;
@@ -34,7 +35,7 @@ std::vector<PowerStage> stages_of_array(const Table& losses) {
   return stages;
 }
 
-// Instances on which light is measured.
+// Instances with a flux map.
 std::set<uint32_t> measured(const Experiment& experiment) {
   std::set<uint32_t> instances;
   for (const NamedReceiver& receiver : experiment.receivers) {
@@ -59,7 +60,7 @@ std::vector<PowerStage> stages_of_light(const OpticalRun& run, const OpticalResu
     to.push_back({"absorbed by " + names[i], absorbed_W});
   }
   std::ranges::stable_sort(losses, std::greater{}, [](const auto& s) { return s.power_W.value; });
-  constexpr size_t single = 8;  // parts with a separate line
+  constexpr size_t single = 8;  // number of parts with a separate line
   if (losses.size() > single + 1) {
     double rest_W = 0.0, variance = 0.0;
     for (size_t i = single; i < losses.size(); ++i) {
@@ -80,14 +81,14 @@ std::vector<PowerStage> stages_of_light(const OpticalRun& run, const OpticalResu
   if (kept.size() == 1) {
     stages.push_back(kept.front());
   } else {
-    // Several measured parts are no single end: they too hang from the remaining power.
+    // Several measured parts are losses of the remaining power as well, not a single end.
     for (PowerStage& stage : kept) stage.is_total = false;
     stages.insert(stages.end(), kept.begin(), kept.end());
   }
   return stages;
 }
 
-// One attitude, traced.
+// Page of one traced attitude.
 RunPage lit_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
                  const PageHead& head, const std::vector<std::string>& headlines) {
   RunPage page = page_of(result, head, headlines);
@@ -98,7 +99,7 @@ RunPage lit_page(const OpticalRun& run, const OpticalResult& light, const RunRes
                   (experiment.beams.size() == 1 ? " lamp, " : " lamps, ") +
                   std::to_string(experiment.scene.instances.size()) + " parts.";
   page.power = power_stages(run, light, result.product);
-  // The waterfall as bars.
+  // The waterfall of page.power replaces this plot.
   std::erase_if(page.product.plots, [](const Plot& plot) { return plot.name == "loss_waterfall"; });
   page.notes = experiment.notices;
   page.stage = stage_of(run, StageMaps::of_product);
@@ -192,7 +193,7 @@ std::function<void(const TracedNode&)> TorqueMapStage::watch() {
 RunFile torque_map_page(const OpticalRun& run, const WrenchTable& table, const RunResult& result,
                         TorqueMapStage stage, const PageHead& head) {
   RunPage page = page_of(result, head, {"largest_", "max_"});
-  // The torque is the purpose of the map: it is shown first.
+  // Maps of the torque, the main result, come first.
   std::ranges::stable_partition(page.product.maps,
                                 [](const Map& map) { return map.title.starts_with("Torque"); });
   const bool by_tilt = table.angles == WrenchTable::Angles::tilt_heading;

@@ -14,12 +14,13 @@ namespace {
 
 constexpr size_t most_states = 2000;
 
-// The value of a column at the row nearest to a time.
+// Value of a column at the row nearest to a time.
 double at_time(const Table& table, const std::vector<double>& values, double time_s) {
   return values[nearest_instant(table.column("t_s").values, time_s)];
 }
 
-// Columns stem_x_N_m, stem_y_N_m, stem_z_N_m of the torque of this stem; empty: of all torques.
+// Columns stem_x_N_m, stem_y_N_m, stem_z_N_m of the torque with this stem; without a stem those of
+// all torques.
 std::vector<const std::vector<double>*> torque_columns(const Table& history, char axis,
                                                        const std::string& wanted) {
   const std::string end = std::string("_") + axis + "_N_m";
@@ -41,7 +42,7 @@ Vec3 torque_at(const Table& history, const std::string& wanted, double time_s) {
   return sum;
 }
 
-// A figure beside the stage: a column of one of the run's tables.
+// A figure beside the stage: a column of a table of the run.
 struct Shown {
   StageFigure figure;
   const Table* table;
@@ -79,7 +80,7 @@ std::vector<PlatformState> thinned(const std::vector<PlatformState>& states) {
   return kept;
 }
 
-// The largest turn between two states that follow each other.
+// Largest rotation angle between two consecutive states.
 double largest_turn_rad(const std::vector<PlatformState>& states) {
   double largest = 0.0;
   for (size_t i = 1; i < states.size(); ++i) {
@@ -89,20 +90,22 @@ double largest_turn_rad(const std::vector<PlatformState>& states) {
   return largest;
 }
 
-// The optical half of an experiment that has one.
+// The optical run of an experiment with a scene; empty otherwise.
 std::optional<OpticalRun> optical_run(const MotionRun& run, const RunOptions& options) {
   if (!run.coupled->light) return std::nullopt;
   return std::optional<OpticalRun>(std::in_place, options, Console());
 }
 
-// Half axes in body axes: columns are their directions times their lengths, the longest 0.5 m.
+// Half-axes of the ellipsoid in body axes: each column is a direction times a length; the longest
+// is 0.5 m.
 Mat3 half_axes_m(const Platform& platform) {
   if (platform.turns_about_one_axis()) {
     return 0.5 * (Mat3::Identity() - 0.9 * platform.axis * platform.axis.transpose());
   }
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(platform.inertia_kg_m2);
   const Vec3& moments = solver.eigenvalues();
-  // A uniform ellipsoid of mass m has I1 = m (b² + c²) / 5 and so on, so that a² ∝ I2 + I3 − I1.
+  // A uniform ellipsoid of mass m has I1 = m (b² + c²)/5 and so on, so that a² is proportional to
+  // I2 + I3 − I1.
   Vec3 lengths;
   for (int k = 0; k < 3; ++k) {
     lengths[k] = std::sqrt(std::max(0.0, 0.5 * moments.sum() - moments[k]));
@@ -136,7 +139,7 @@ StagePart ellipsoid(const Mat3& axes_m) {
   return part;
 }
 
-// A square rod from the origin.
+// A square rod from the origin along x.
 StagePart rod_along_x(double length_m) {
   const auto l = static_cast<float>(length_m);
   const auto w = static_cast<float>(0.02);
@@ -198,10 +201,10 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
   for (const Plot& plot : run.result.product.plots) {
     if (plot.x_label == "time [s]") page.cursors.push_back({plot.name, 0, 1.0});
   }
-  // A page draws no areas.
+  // Pages do not show area plots.
   std::erase_if(page.product.plots,
                 [](const Plot& plot) { return plot.name == "torque_fractions"; });
-  // The plot with all curves over one axis of time comes first.
+  // The plot with all curves over a common time axis comes first.
   std::ranges::stable_partition(page.product.plots,
                                 [](const Plot& plot) { return plot.name == "power_and_attitude"; });
   page.headline = show(states.back().time_s - states.front().time_s) + " s, " +
@@ -212,7 +215,7 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
 SceneStage platform_stage(const Platform& platform) {
   SceneStage stage;
   const Mat3 axes_m = half_axes_m(platform);
-  // The extent of the ellipsoid along x is the largest x of a point on it.
+  // Extent of the ellipsoid along x, plus a margin.
   stage.parts = {ellipsoid(axes_m), rod_along_x(axes_m.row(0).norm() + 0.15)};
   stage.radius_m = 0.6;
   const Camera camera = camera_framing(stage.radius_m);

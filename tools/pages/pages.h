@@ -15,23 +15,23 @@ struct MotionRun;
 struct SceneStage;
 struct WrenchTable;
 
-// Properties of the run on a page beside its results.
+// Properties of a run on a page in addition to its results.
 struct PageHead {
   std::string title;  // the experiment's name
   std::string verb;
-  std::string command;  // that makes it again
+  std::string command;  // command that reproduces the run
 };
 
-// The page of a run of that verb, trace or power.
+// Page of a run of `trace` or `power`.
 RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
                    const PageHead& head);
 
-// The body at every attitude or direction of light. It grows while the nodes are traced, since
-// their maps are not part of the run's result.
+// The body at every attitude or direction of light. It is filled while the nodes are traced,
+// because their maps are not part of the run's result.
 class TorqueMapStage {
  public:
   TorqueMapStage();
-  // Valid as long as this.
+  // Valid as long as this object.
   NodeWatch watch();
 
  private:
@@ -42,24 +42,24 @@ class TorqueMapStage {
 RunFile torque_map_page(const OpticalRun& run, const WrenchTable& table, const RunResult& result,
                         TorqueMapStage stage, const PageHead& head);
 
-// The platform as it moves, played over time. Where the experiment has a scene, that scene, with
-// its light traced at some instants of the run; otherwise an ellipsoid with the platform's moments
-// of inertia.
+// Page of the platform's motion, which can be played over time. If the experiment has a scene, it
+// is shown with light traced at some instants of the run; otherwise an ellipsoid with the
+// platform's moments of inertia.
 RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageHead& head);
 
-// report.html of a diagnosis: the finding in one sentence, the effects with their numbers and
-// places on the array, where recording and nominal model part, the ranking of the alternatives,
-// readings beside predictions with the part that was never fitted shaded, and the quality of the
-// data. It needs no script.
+// Text of report.html of a diagnosis, without a script. It contains the finding in one sentence,
+// the effects with their numbers and their positions on the array, the deviations of the recordings
+// from the nominal model, the ranking of the alternatives, readings with predictions and shaded
+// held-out data, and the quality of the data.
 std::string report_html(const Diagnosis& diagnosis, const Provenance& provenance,
                         const std::string& title);
-// The plots and maps of a diagnosis for figures in a paper: of every channel, sweep and scan the
-// readings, both models and the residuals, and torques without a law. `of_light` as below.
+// Plots and maps of a diagnosis for figures in a paper: readings, both models and residuals of
+// every channel, sweep and scan; and empirical torques. `of_light` as below.
 Product diagnosis_figures(const Diagnosis& diagnosis, bool of_light);
-// The page with the scene, and curves and maps to point at, in place of the drawn readings. Where
-// the experiment has a scene with lamps, that scene; for motion without one an ellipsoid with the
-// platform's moments of inertia; for curves of a module no scene at all. `of_light`: the recordings
-// are scans, sweeps and runs of light instead of motion.
+// Interactive report: the scene, curves and maps replace the static readings. If the experiment has
+// a scene with lamps, it is shown; for motion without one, an ellipsoid with the platform's moments
+// of inertia; for curves of a module no scene. `of_light`: the recordings are scans, sweeps and
+// runs of light instead of motion.
 std::string interactive_report_html(const Diagnosis& d, const Provenance& provenance, bool of_light,
                                     const RunOptions& options, const PageHead& head);
 

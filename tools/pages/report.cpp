@@ -1,4 +1,4 @@
-// The text of report.html, with its charts as drawn pictures.
+// Text of report.html, with its charts as static pictures.
 #include <algorithm>
 #include <cmath>
 
@@ -34,7 +34,7 @@ std::string row(const std::vector<std::string>& cells) {
   return tag("tr", content);
 }
 
-// An element that shows a number of diagnosis.json; `key` leads to it.
+// An element with a number of diagnosis.json; `key` is its path there.
 std::string keyed(const std::string& element, const std::string& key, const Estimate& number,
                   const std::string& text) {
   return "<" + element + " class=\"number\" data-key=\"" + xml_text(key) + "\" data-value=\"" +
@@ -74,7 +74,7 @@ std::string count(int64_t number) {
   return digits;
 }
 
-// The figures on which the finding rests.
+// Cards with the main figures of the finding.
 std::string cards(const Diagnosis& d) {
   const auto card = [](const std::string& value, const std::string& meaning) {
     return tag("div", tag("b", value) + tag("span", meaning));
@@ -259,7 +259,7 @@ std::string first_of(const std::string& what, size_t all, size_t most) {
 
 // Scans at each attitude: measured, nominal, and the residuals of both models.
 std::string scan_figures(const RecordingSeries& recording, bool found) {
-  constexpr size_t most = 6;  // attitudes
+  constexpr size_t most = 6;  // number of attitudes
   std::string figures;
   const std::vector<RecordingSeries> alone = {recording};
   const std::vector<ScanGroup> groups = scan_groups(alone);
@@ -342,7 +342,7 @@ std::string data_section(const DataQuality& data) {
   return tag("section", tag("h2", "Data quality") + table({}, rows));
 }
 
-// All readings beside the models.
+// All readings with the models.
 std::string readings(const Diagnosis& d) {
   if (d.series.empty()) return "";
   std::string section = tag("h2", "Readings and models");

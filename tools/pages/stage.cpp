@@ -30,7 +30,7 @@ StagePart part_of(const Scene& scene, const Instance& instance) {
   return part;
 }
 
-// Corners that agree in place and texture are one vertex.
+// Merges corners with equal position and texture coordinates into one vertex.
 class VertexPool {
  public:
   explicit VertexPool(PaintedSurface& surface) : surface_(surface) {}

@@ -28,13 +28,13 @@ bool takes_value(const CLI::Option& option) {
   return option.get_items_expected_max() > 0;
 }
 
-// "--set", or the short name where there is no other.
+// Long name of an option, such as "--set"; the short name if there is no other.
 std::string name_of(const CLI::Option& option) {
   return option.get_lnames().empty() ? "-" + option.get_snames().front()
                                      : "--" + option.get_lnames().front();
 }
 
-// The placeholder of an option's value: that of --target-error is TARGET_ERROR.
+// Placeholder for an option's value: TARGET_ERROR for --target-error.
 std::string value_name(const CLI::Option& option) {
   std::string text;
   for (const char c : name_of(option).substr(2)) {
@@ -43,7 +43,7 @@ std::string value_name(const CLI::Option& option) {
   return text;
 }
 
-// Hyphens are printed as such, and no line begins a request.
+// Escapes text for troff: hyphens are printed as hyphens, and no line begins a request.
 std::string troff(const std::string& text) {
   std::string safe;
   for (const char c : text) {
@@ -63,7 +63,7 @@ std::string troff_options(const CLI::App& app) {
   return text;
 }
 
-// In single quotes of a shell.
+// Text in single quotes for a shell.
 std::string in_quotes(const std::string& text) {
   std::string safe = "'";
   for (const char c : text) safe += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -101,7 +101,7 @@ std::string bash_script(const CLI::App& app) {
          "complete -o default -F _photorque photorque\n";
 }
 
-// Colons and brackets have a meaning in zsh's descriptions of options.
+// Escapes characters with a meaning in zsh's descriptions of options.
 std::string zsh_text(const std::string& text) {
   std::string safe;
   for (const char c : text) {
@@ -159,7 +159,7 @@ std::string fish_script(const CLI::App& app) {
   return text;
 }
 
-// photorque(1) as troff.
+// Manual page photorque(1) as troff.
 std::string man_page(const CLI::App& app, const std::string& version) {
   std::string text = ".TH PHOTORQUE 1 \"\" \"photorque " + troff(version) +
                      "\" \"User Commands\"\n.SH NAME\nphotorque \\- " +
@@ -177,13 +177,13 @@ std::string man_page(const CLI::App& app, const std::string& version) {
          "found and value expected.\n.TP\n3\nThe computation failed.\n";
 }
 
-// A script that completes commands, options and files.
+// Shell script that completes commands, options and files.
 std::string completion_script(const CLI::App& app, const std::string& shell) {
   if (shell == "bash") return bash_script(app);
   return shell == "zsh" ? zsh_script(app) : fish_script(app);
 }
 
-// Output for packages.
+// Requested output for packages.
 struct Manual {
   bool page = false;
   std::string shell;
@@ -223,7 +223,8 @@ void add_option(CLI::App& app, const Option& option) {
   if (option.mistake) added->check(option.mistake);
 }
 
-// A list behind --recording would swallow an experiment that follows it: each has its own option.
+// Hint for options that must be repeated. They do not accept lists, because a list would swallow an
+// experiment that follows it.
 std::string hint_at(int argc, char** argv) {
   for (const char* option : {"--recording", "--holdout", "--set"}) {
     if (std::find(argv + 1, argv + argc, std::string_view(option)) == argv + argc) continue;
@@ -232,7 +233,7 @@ std::string hint_at(int argc, char** argv) {
   return "";
 }
 
-// One line for arguments that the command does not have: of an unknown option the most similar one.
+// One line for arguments that the command does not support, with the most similar option.
 std::string unexpected(const CLI::ParseError& error, const CLI::App& app, int argc, char** argv) {
   const std::string text = error.what();
   std::istringstream words(text.substr(text.find(": ") + 1));
@@ -251,7 +252,7 @@ std::string unexpected(const CLI::ParseError& error, const CLI::App& app, int ar
          (similar.empty() ? "one that --help lists" : "a known one, perhaps " + similar);
 }
 
-// One line for a first word that is no command; empty where it may be one.
+// One line for a first word that is not a command; empty if it may be one.
 std::string unknown_command(const std::string& word, const std::vector<Verb>& verbs) {
   std::set<std::string> known;
   for (const Verb& verb : verbs) known.insert(verb.name);

@@ -1,5 +1,5 @@
-// The command line, read by CLI11, and its texts for other programs: help, manual page and
-// completions for shells.
+// The command line, parsed with CLI11, and its texts for other programs: help, manual page and
+// shell completions.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,13 @@
 namespace photorque {
 
 struct CommandLine {
-  // Exit status of a command line that needs no run: help, version, manual, or an error.
+  // Exit status if no run is needed: help, version, manual, or an error. Empty otherwise.
   std::optional<int> status;
   const Verb* verb = nullptr;
-  Command command = {};  // of the verb, its options read
+  Command command = {};  // of the verb, with parsed options
 };
 
+// Parses the command line, and prints help, manual or the error of a wrong line.
 CommandLine read_command_line(int argc, char** argv, const std::vector<Verb>& verbs);
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-// The program: reads the command line, runs one verb, turns exceptions into exit statuses.
+// The program: parses the command line, runs one verb, converts exceptions to exit statuses.
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -31,18 +31,19 @@ namespace {
 constexpr const char* no_thread =
     "numerical failure: not enough memory for another thread (ulimit -v, -u)\n";
 
-// One line on standard error. Names in it may come from hostile files and command lines.
+// Prints one line on standard error. It is cleaned, because names in it may come from hostile files
+// and command lines.
 void print_error(const std::string& line) {
   std::fprintf(stderr, "%s\n", clean_text(line).c_str());
 }
 
-// In the command's output folder, which signals leave clean.
+// Runs a command in its output folder. Signals do not leave incomplete files in it.
 void run_in_folder(const Command& command, const Program& program) {
   const CommandOptions& options = *command.options;
   const std::filesystem::path out = options.out_folder();
   const auto others = command.folder == Command::Folder::shared ? OutputFolder::Others::share
                                                                 : OutputFolder::Others::refuse;
-  // Results do not depend on a reader of the text (as `head`) that leaves early.
+  // A reader of the text that exits early (such as `head`) must not change the results.
   std::signal(SIGPIPE, SIG_IGN);
   const Interruption::Watch watch(*program.interruption, out);
   const OutputFolder folder(out, others);
@@ -56,7 +57,7 @@ void run_in_folder(const Command& command, const Program& program) {
   command.run(program);
 }
 
-// An error without a file is an error of the experiment.
+// Runs a command. An error without a file is reported as an error of the experiment.
 int run_command(const Command& command, const Program& program) {
   const std::filesystem::path& experiment = command.options->experiment;
   try {
@@ -100,10 +101,10 @@ int run(int argc, char** argv, Interruption& interruption) {
   return run_command(line.command, {verbs, &interruption});
 }
 
-// The last resort: one line and a documented status where a library, or this program, would end by
-// a signal. Calls only functions that are allowed in a handler.
+// Signal handler for faults in a library or in this program: prints one line and exits with a
+// documented status. Calls only functions that are allowed in a handler.
 [[noreturn]] void end_after_fault(int) {
-  // Libraries that do not check their allocations end here too.
+  // Libraries that do not check their allocations crash without memory; the message depends on it.
   constexpr size_t some = size_t{256} << 20;
   const bool has_memory = ::mmap(nullptr, some, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS,
                                  -1, 0) != MAP_FAILED;
@@ -155,7 +156,7 @@ void catch_faults() {
 int main(int argc, char** argv) {
   photorque::catch_faults();
   std::set_terminate(photorque::end_without_memory);
-  // A file beyond the limit of its size is a write that fails, not an end.
+  // Exceeding the limit of the file size becomes a write error instead of a signal.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     photorque::Interruption interruption;
@@ -178,7 +179,8 @@ int main(int argc, char** argv) {
                            "\", expected a file or folder that exists and is accessible");
     return 2;
   } catch (const std::bad_alloc&) {
-    // Threads of libraries that are short of memory may never be ready to be joined.
+    // Not a normal exit: threads of libraries that are short of memory may never be ready to be
+    // joined.
     std::fputs("numerical failure: not enough memory\n", stderr);
     std::_Exit(3);
   } catch (const std::system_error& error) {

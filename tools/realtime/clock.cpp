@@ -12,20 +12,20 @@
 namespace photorque {
 namespace {
 
-// The smallest value that at least this fraction of the sorted ones do not exceed.
+// The smallest value that is at least as large as this fraction of the sorted values.
 double percentile(const std::vector<float>& sorted, double fraction) {
   const double rank = std::ceil(fraction * static_cast<double>(sorted.size()));
   return sorted[static_cast<size_t>(std::max(rank, 1.0)) - 1];
 }
 
-// Complementary distribution: the fraction of values above each value.
+// Complementary distribution: fraction of values above each value.
 Plot::Curve beyond(const std::string& label, const std::vector<float>& sorted) {
   Plot::Curve curve;
   curve.label = label;
   const size_t count = sorted.size();
   constexpr size_t points = 400;
   for (size_t i = 0; i < points; ++i) {
-    // Evenly in the logarithm of the fraction beyond.
+    // Equally spaced in the logarithm of the fraction.
     const double fraction =
         std::pow(static_cast<double>(count), -static_cast<double>(i) / (points - 1));
     const auto left = static_cast<size_t>(std::llround(fraction * static_cast<double>(count)));

@@ -7,7 +7,7 @@
 
 namespace photorque {
 
-// The layout is copied as it lies in memory.
+// The layout in memory is that of the packet.
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(photorque_header) == 48);
 static_assert(sizeof(photorque_command_packet) == 72);
@@ -24,7 +24,7 @@ uint64_t Gate::total_refused() const {
   return std::accumulate(refused_.begin(), refused_.end(), uint64_t{0});
 }
 
-// The first fault of the packet; `packet` is filled as far as it is valid.
+// First fault of the packet; empty if it is valid. `packet` is filled as far as it is valid.
 std::optional<Refusal> Gate::fault_of(std::span<const std::byte> bytes,
                                       ClientPacket& packet) const {
   if (bytes.size() < sizeof(photorque_header) || bytes.size() > sizeof packet.command) {
@@ -50,7 +50,7 @@ std::optional<Refusal> Gate::fault_of(std::span<const std::byte> bytes,
   return {};
 }
 
-// Whether this sender may send this packet now.
+// Reason why this sender may not send this packet now; empty if it may.
 std::optional<Refusal> Gate::reason_to_refuse(const ClientPacket& packet, uint64_t sender,
                                               int64_t now_ns) const {
   const photorque_header& header = packet.command.header;
@@ -60,7 +60,7 @@ std::optional<Refusal> Gate::reason_to_refuse(const ClientPacket& packet, uint64
     const bool is_free = !client_ || is_silent(now_ns);
     return is_hello && is_free ? std::optional<Refusal>{} : Refusal::stranger;
   }
-  // A client that restarted at the same address counts from the start.
+  // A client that restarted at the same address begins a new sequence.
   if (header.sequence <= last_sequence_ && !(is_hello && header.run == 0)) return Refusal::old;
   return {};
 }

@@ -1,4 +1,4 @@
-// Checks of received packets before their use.
+// Checks of received packets.
 #pragma once
 
 #include <array>
@@ -11,44 +11,45 @@
 
 namespace photorque {
 
-// Why a packet is refused; names in refusal_names.
+// Reason for rejecting a packet; names in refusal_names.
 enum class Refusal {
-  size,        // not that of its kind
+  size,        // differs from that of its kind
   magic,       // not a packet of this protocol
-  version,     // of another layout
+  version,     // another layout
   kind,        // not one that clients send
-  checksum,    // damaged on its way
-  not_finite,  // NaN or infinity
-  too_large,   // beyond max_torque_N_m
+  checksum,    // damaged in transit
+  not_finite,  // contains NaN or infinity
+  too_large,   // exceeds max_torque_N_m
   run,         // for another run
   stranger,    // from another sender than the client
-  old,         // sent before an admitted one, or repeated
+  old,         // sent before an accepted packet, or repeated
   count
 };
 inline constexpr std::array<const char*, static_cast<size_t>(Refusal::count)> refusal_names = {
     "size",       "magic",     "version", "kind",     "checksum",
     "not_finite", "too_large", "run",     "stranger", "old"};
 
-// An admitted packet: its kind and command.
+// An accepted packet.
 struct ClientPacket {
-  bool begins_session = false;  // a hello of another client, or of one that commanded before
+  // A hello of another client, or of a client that has sent commands before.
+  bool begins_session = false;
   photorque_packet_kind kind = PHOTORQUE_HELLO;
-  photorque_command_packet command{};  // a hello and a goodbye have its header alone
+  photorque_command_packet command{};  // a hello and a goodbye have only its header
 };
 
-// Accepts one client at a time: the first that sends a hello, until its goodbye or a silence of
-// `silence_ns`. Sequence numbers start with the hello of a session.
+// Accepts one client at a time: the first that sends a hello, until its goodbye or until it is
+// silent for `silence_ns`. Sequence numbers restart with the hello of a session.
 class Gate {
  public:
   Gate(uint64_t run, double max_torque_N_m, int64_t silence_ns);
 
-  // `bytes` as they came from `sender` (a number for its address). Never throws; a
-  // refused packet has no effect but its count.
+  // Checks `bytes` from `sender` (its address as a number). Never throws. A rejected packet only
+  // increases a counter.
   std::optional<ClientPacket> admit(std::span<const std::byte> bytes, uint64_t sender,
                                     int64_t now_ns);
 
   std::optional<uint64_t> client() const { return client_; }
-  // Whether there is a client, and nothing came from it for longer than `silence_ns`.
+  // Whether there is a client from which nothing was received for longer than `silence_ns`.
   bool is_silent(int64_t now_ns) const;
   const std::array<uint64_t, refusal_names.size()>& refused() const { return refused_; }
   uint64_t total_refused() const;

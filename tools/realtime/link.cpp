@@ -84,7 +84,7 @@ double LinkImpairment::jitter_s() const {
     case LinkSettings::Jitter::uniform:
       return settings_.jitter_s * u;
     case LinkSettings::Jitter::gaussian:
-      // Box and Muller, Ann. Math. Stat. 29 (1958) 610.
+      // Method: Box and Muller, Ann. Math. Stat. 29 (1958) 610.
       return settings_.jitter_s *
              std::abs(std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * pi * draw(jitter_v)));
   }

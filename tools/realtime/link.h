@@ -1,7 +1,7 @@
-// A simulated wireless link: packets come late, in another order, in bursts or not at all.
+// A simulated wireless link: packets can be late, reordered, or lost singly or in bursts.
 //
-// Every draw is a hash of the seed, the direction and the packet's number, so that the same packets
-// are treated equally at any speed of the clock.
+// Every random number is a hash of the seed, the direction and the packet's number, so that equal
+// packets are treated equally at any speed of the clock.
 #pragma once
 
 #include <algorithm>
@@ -19,19 +19,21 @@ struct LinkSettings {
   enum class Jitter { exponential, uniform, gaussian };
   double delay_s = 0.0;  // minimum delay of a packet
   double jitter_s =
-      0.0;  // beyond: mean of an exponential, width of a uniform, scale of a half-normal
+      // In addition: mean of an exponential, width of a uniform, or scale of a half-normal
+      // distribution.
+      0.0;
   Jitter jitter = Jitter::exponential;
-  double loss = 0.0;  // fraction of packets, independent of each other
+  double loss = 0.0;  // fraction of lost packets, independent of each other
   // Bursts (E. N. Gilbert, Bell Syst. Tech. J. 39 (1960) 1253; E. O. Elliott, ibid. 42 (1963)
-  // 1977): the probability per packet that one begins and that it ends, and that a packet is lost
-  // in it.
+  // 1977): probability per packet that a burst begins, probability that it ends, and probability
+  // that a packet in it is lost.
   double burst_begin = 0.0, burst_end = 1.0, burst_loss = 1.0;
-  bool reorder = true;  // a packet may overtake another; else it waits for those before it
-  // Measured delays, taken in turn instead of the above; negative: the packet was lost.
+  bool reorder = true;  // a packet may overtake another; otherwise it waits for earlier ones
+  // Measured delays, used in turn instead of the above; negative: the packet was lost.
   std::vector<double> trace_s;
 };
 
-// Reads a table of link_keys(); its file of measured delays lies in `folder`.
+// Reads a table of link_keys(); its file of measured delays is relative to `folder`.
 LinkSettings read_link(const Settings& settings, const std::filesystem::path& folder);
 std::vector<Key> link_keys();
 
@@ -40,7 +42,7 @@ class LinkImpairment {
  public:
   LinkImpairment(LinkSettings settings, uint64_t seed, uint64_t stream);
 
-  // The delay of the next packet [s]; nothing: it is lost.
+  // Delay of the next packet [s]; empty if it is lost.
   std::optional<double> next();
 
   uint64_t sent() const { return sent_; }
@@ -56,13 +58,14 @@ class LinkImpairment {
   bool in_burst_ = false;
 };
 
-// Packets on their way. Times are the caller's, in seconds.
+// Packets in transit. Times are those of the caller [s].
 template <class Packet>
 class SimulatedLink {
  public:
   SimulatedLink(LinkSettings settings, uint64_t seed, uint64_t stream)
       : keeps_order_(!settings.reorder), fate_(std::move(settings), seed, stream) {}
 
+  // Sends a packet; it is lost or arrives after a random delay.
   void push(const Packet& packet, double now_s) {
     const std::optional<double> delay_s = fate_.next();
     if (!delay_s) return;
@@ -74,19 +77,19 @@ class SimulatedLink {
                          [](double due, const DelayedPacket& other) { return due < other.due_s; });
     on_the_way_.insert(later, {due_s, packet});
   }
-  // The next that has arrived by `now_s`, by time of arrival.
+  // The next packet that has arrived by `now_s`, in order of arrival.
   std::optional<Packet> pop(double now_s) {
     if (on_the_way_.empty() || on_the_way_.front().due_s > now_s) return {};
     Packet first = on_the_way_.front().packet;
     on_the_way_.erase(on_the_way_.begin());
     return first;
   }
-  // When the next arrives; infinity: nothing is on its way.
+  // Arrival time of the next packet; infinity if none is in transit.
   double next_due_s() const {
     return on_the_way_.empty() ? std::numeric_limits<double>::infinity()
                                : on_the_way_.front().due_s;
   }
-  // Whatever is on its way never arrives.
+  // Discards all packets in transit.
   void clear() { on_the_way_.clear(); }
   const LinkImpairment& impairment() const { return fate_; }
 
@@ -98,7 +101,7 @@ class SimulatedLink {
   bool keeps_order_;
   LinkImpairment fate_;
   double last_due_s_ = -std::numeric_limits<double>::infinity();
-  std::vector<DelayedPacket> on_the_way_;  // by due_s
+  std::vector<DelayedPacket> on_the_way_;  // sorted by due_s
 };
 
 }  // namespace photorque

@@ -92,10 +92,10 @@ enum LinkStream : uint64_t { stream_to_client = 0x70, stream_from_client };
 
 constexpr int64_t never_ns = std::numeric_limits<int64_t>::max();
 
-// Packets that a paced tick reads at most, so that a flood of packets cannot hold it up: about as
-// many as the system keeps for a socket by default. The rest stays for the next tick.
+// Maximum number of packets that a paced tick reads, so that a flood of packets cannot delay it. It
+// is about the default capacity of a socket; further packets wait for the next tick.
 constexpr size_t packets_a_tick = 256;
-// Events that are printed; further ones are counted.
+// Maximum number of events that are printed; further ones are counted.
 constexpr size_t most_events = 1000;
 
 int64_t in_ns(double seconds) {
@@ -108,7 +108,7 @@ void sleep_until(int64_t until_ns) {
   ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
-// Differs between runs, so that packets for an earlier run are recognised. Not zero.
+// A number that differs between runs, so that packets for an earlier run are recognised. Not zero.
 uint64_t run_number() {
   return hash_words(static_cast<uint64_t>(monotonic_ns()), static_cast<uint64_t>(::getpid())) | 1;
 }
@@ -130,7 +130,7 @@ Session::Session(const ServeSettings& settings, UdpSocket socket, uint64_t seed,
       events_(Table::of("session_events", "Clients: arrivals, silences, departures",
                         {"time_s", "event"})) {}
 
-// Seconds since the start: by the clock, or those of the tick.
+// Time since the start [s]: of the clock, or of the tick in lockstep.
 double Session::now_s() const {
   return is_paced() ? clock_.run_s(monotonic_ns()) : tick_s_;
 }
@@ -172,7 +172,7 @@ ZeroOrderHold Session::tick(const LiveRow& row) {
 void Session::await_client() {
   const int64_t give_up_ns = monotonic_ns() + in_ns(settings_.client_timeout_s);
   while ((settings_.wait_for_client || !is_paced()) && !gate_.client()) {
-    packets_of_tick_ = 0;  // no tick waits for these
+    packets_of_tick_ = 0;  // the limit per tick does not apply here
     take_in(give_up_ns);
     if (monotonic_ns() > give_up_ns) {
       throw NumericalError("no client came to " + socket_.where() + " within " +
@@ -182,7 +182,7 @@ void Session::await_client() {
   clock_.start(monotonic_ns());
 }
 
-// Until the tick is due, but not idly: commands come in and delayed measurements go out.
+// Waits until the tick is due; meanwhile receives commands and sends delayed measurements.
 void Session::wait_until_due(size_t tick) {
   const int64_t due_ns = clock_.due_ns(tick);
   while (monotonic_ns() < due_ns) {
@@ -232,7 +232,7 @@ void Session::send(const photorque_measurement_packet& packet, uint32_t flags) {
   ++sent_;
 }
 
-// Datagrams may be lost even on one machine: the request is repeated.
+// Waits for the answer and repeats the request, because datagrams may be lost even on one machine.
 void Session::await_answer() {
   const int64_t give_up_ns = monotonic_ns() + in_ns(settings_.client_timeout_s);
   constexpr int64_t again_ns = 200'000'000;
@@ -252,8 +252,8 @@ void Session::await_answer() {
   }
 }
 
-// Takes one packet in, waiting for it until `until_ns`; whether one was there and the tick may have
-// it.
+// Receives one packet, waiting for it until `until_ns`. Returns whether there was one within the
+// limit per tick.
 bool Session::take_in(int64_t until_ns) {
   if (is_paced() && packets_of_tick_ >= packets_a_tick) return false;
   const std::optional<ReceivedBytes> got = socket_.receive(until_ns);
@@ -300,7 +300,7 @@ void Session::note(const std::string& event) {
   report_("  at " + shortest(start_s_ + tick_s_) + " s: " + event);
 }
 
-// The safe command of a client that has vanished without a goodbye: no torque.
+// Ends the torque of a client that has become silent without a goodbye.
 void Session::end_after_silence() {
   if (!gate_.is_silent(monotonic_ns())) return;
   std::ranges::fill(acting_.torque_body_N_m, 0.0);
@@ -310,7 +310,7 @@ void Session::end_after_silence() {
   note("the client is silent for " + shortest(settings_.silence_s) + " s: no torque");
 }
 
-// The newest command that has come through the link acts from now on.
+// Applies the newest command that has passed the link.
 void Session::command(double now_s) {
   while (const auto arrived = from_client_.pop(now_s)) {
     if (client_left_) continue;
@@ -322,7 +322,7 @@ void Session::command(double now_s) {
     acting_since_s_ = now_s;
   }
   if (now_s - acting_since_s_ > settings_.hold_s) {
-    // Silence is no reason to take older commands.
+    // After a timeout, older commands must not become active.
     std::ranges::fill(acting_.torque_body_N_m, 0.0);
   }
 }

@@ -1,4 +1,4 @@
-// A run in real time with its client: the table [serve] and the session that serves it.
+// A run in real time with its client: the table [serve] and the session.
 #pragma once
 
 #include <functional>
@@ -25,11 +25,11 @@ struct ServeSettings {
   double rate_Hz = 0.0;
   std::string address;
   int port = 0;
-  bool wait_for_client = true;  // before the first tick
+  bool wait_for_client = true;  // wait for a client before the first tick
   double client_timeout_s = 0.0;
-  double silence_s = 0.0;  // after which the torque of a paced run's client ends
+  double silence_s = 0.0;  // paced: silence after which the client's torque ends
   double max_torque_N_m = 0.0;
-  double hold_s = 0.0;  // after which a command that is not renewed ends; infinity: never
+  double hold_s = 0.0;  // time after which a command ends unless it is renewed; infinity: never
   double deadline_s = 0.0;
   OnMiss on_miss = OnMiss::catch_up;
   double spin_s = 0.0;
@@ -42,25 +42,25 @@ struct ServeSettings {
 ServeSettings read_serve(const Settings& root);
 Key serve_table();
 
-// A run in real time with its client: at every tick a measurement goes out and commands come in.
+// A run in real time with its client: at every tick it sends a measurement and receives commands.
 class Session {
  public:
-  // `seed` of the simulated links; `start_s` is the run's initial time.
-  // `report` gets one line for every event (a session begins, its client falls silent or leaves).
+  // `seed` is that of the simulated links, `start_s` the run's initial time. `report` receives one
+  // line per event (a session begins, its client becomes silent or leaves).
   Session(const ServeSettings& settings, UdpSocket socket, uint64_t seed, double start_s,
           std::function<void(const std::string&)> report);
 
-  // The run's LiveCommander. In order, at tick k:
-  //   paced: waits until start + k steps, taking in what comes meanwhile; sends the measurement;
-  //   lockstep: sends the measurement and waits for the answer to it;
-  // then gives the newest command that has come through the link. NumericalError where a client
-  // does not come or answer within client_timeout_s, or OnMiss::stop ends the run.
+  // The run's LiveCommander. At tick k it
+  //   paced: waits until start + k steps and receives packets meanwhile; sends the measurement;
+  //   lockstep: sends the measurement and waits for its answer;
+  // then returns the newest command that has passed the link. Throws NumericalError if a client
+  // does not connect or answer within client_timeout_s, or if OnMiss::stop ends the run.
   ZeroOrderHold tick(const LiveRow& row);
 
-  // Sends the client the end of the run.
+  // Sends the end of the run to the client.
   void finish();
 
-  // Commands that acted, for `propagate` to repeat the run.
+  // Commands as applied; with them `propagate` can repeat the run.
   const Schedule& commands() const { return acted_; }
   double last_tick_s() const { return start_s_ + tick_s_; }
   // Deadlines, packets and rejections.
@@ -90,10 +90,10 @@ class Session {
   SimulatedLink<photorque_measurement_packet> to_client_;
   SimulatedLink<photorque_command_packet> from_client_;
   photorque_measurement_packet last_sent_{};
-  photorque_command_packet acting_{};  // sequence 0: nothing is commanded
+  photorque_command_packet acting_{};  // sequence 0: no command
   double acting_since_s_ = 0.0;
   uint64_t tick_ = 0;
-  double tick_s_ = 0.0;  // of the run, since its start
+  double tick_s_ = 0.0;  // time of the run since its start
   int64_t returned_ns_ = 0;
   bool client_left_ = false, answered_ = false, fell_silent_ = false;
   size_t packets_of_tick_ = 0;

@@ -1,4 +1,4 @@
-// Packets over UDP: one socket, never blocking.
+// Packets over UDP: one non-blocking socket.
 #include "tools/realtime/udp.h"
 
 #include <arpa/inet.h>
@@ -17,7 +17,7 @@ namespace photorque {
 
 namespace {
 
-// A file descriptor that is closed with its last owner.
+// A file descriptor that is closed by its last owner.
 std::shared_ptr<const int> owned(int descriptor) {
   return {new int(descriptor), [](const int* one) {
             ::close(*one);

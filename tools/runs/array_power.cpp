@@ -13,8 +13,8 @@ namespace photorque {
 
 namespace {
 
-// Power-weighted mean wavelength of the light in each band, from the ampere per watt that it would
-// give were every photon converted.
+// Power-weighted mean wavelength of the light in each band, from the ideal responsivity [A/W] with
+// every photon converted.
 std::vector<double> mean_wavelengths_m(const std::vector<double>& ideal_responsivity_A_W) {
   std::vector<double> wavelength_m;
   for (const double r : ideal_responsivity_A_W) {
@@ -23,8 +23,8 @@ std::vector<double> mean_wavelengths_m(const std::vector<double>& ideal_responsi
   return wavelength_m;
 }
 
-// Within a band the light of all sources counts alike: a notice is printed where it does not. From
-// the ampere per watt of each source in the band.
+// Notices about bands in which the sources have different responsivities. Within a band only the
+// total light of all sources is known.
 std::vector<std::string> spectral_notices(const QuantumEfficiency& efficiency, const Bands& bands,
                                           const std::vector<WeighedSpectrum>& spectra) {
   constexpr double alike = 0.01;
@@ -46,7 +46,7 @@ std::vector<std::string> spectral_notices(const QuantumEfficiency& efficiency, c
   return notices;
 }
 
-// Current per watt of the lamps' light in each band.
+// Sets the current per watt of the lamps' light in each band.
 void read_responsivity(OpticalRun& run, ArrayPower& array) {
   const Experiment& experiment = run.experiment();
   std::vector<WeighedSpectrum> spectra;
@@ -66,7 +66,7 @@ void read_responsivity(OpticalRun& run, ArrayPower& array) {
   array.ideal_responsivity_A_W = over_bands({{1e-8, 1e-4}, {1.0, 1.0}});
 }
 
-// Air as [environment] has it; none around a platform in orbit.
+// Air from [environment]; none around a platform in orbit.
 Surroundings surroundings_of(const ExperimentFile& file) {
   Surroundings around;
   for (const Settings& environment : file.others("environment")) {
@@ -143,7 +143,7 @@ ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const Trace
   ArrayResult power = evaluate_array(array.design, light, array.responsivity_A_W);
   const double delivered = power.efficiency.value;
   const bool too_dark = array.design.heat && array.design.heat->absorptance < delivered;
-  // An efficiency above 1 is an error of the cells and reported elsewhere.
+  // An efficiency above 1 is an error of the cells, which is reported elsewhere.
   if (too_dark && delivered <= 1.0) {
     throw InputError({run.experiment().file.path.string()}, "array.thermal.absorptance",
                      show(array.design.heat->absorptance),

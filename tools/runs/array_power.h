@@ -1,4 +1,4 @@
-// From a trace to the electric power of the experiment's solar array.
+// Electric power of the experiment's solar array from a trace.
 #pragma once
 
 #include <optional>
@@ -12,45 +12,47 @@
 
 namespace photorque {
 
-// The `[array]` of an experiment, ready to be evaluated after each trace.
+// The `[array]` of an experiment, prepared for evaluation after each trace.
 struct ArrayPower {
   ArrayDesign design;
-  size_t flux_map = 0;              // place among the receivers
-  std::optional<size_t> incidence;  // that of the IncidenceReceiver
-  std::optional<size_t> back_map;   // of bifacial cells
+  size_t flux_map = 0;              // index among the receivers
+  std::optional<size_t> incidence;  // index of the IncidenceReceiver
+  std::optional<size_t> back_map;   // index of the map of the back, for bifacial cells
   double bifaciality = 0.0;
   std::vector<double> responsivity_A_W;        // per band of the scene
-  std::vector<double> ideal_responsivity_A_W;  // were every photon converted
+  std::vector<double> ideal_responsivity_A_W;  // with every photon converted
   std::vector<std::string> notices;            // one line each
   ArrayReport report;
 };
 
-// Reads `[array]`; its key `receiver` names the flux map that holds the cells (default: the first
-// one). InputError when the experiment has no array, and for unknown keys. Adds a receiver to the
-// run where the light's angle counts: under [array.cover], and on a surface with optics by angle.
-// `known`: the array of a run with the same lamps, whose spectra need not be looked at again.
+// Reads `[array]`; its key `receiver` names the flux map with the cells (default: the first).
+// Throws InputError if the experiment has no array, and for unknown keys. Adds a receiver to the
+// run if the angle of the light matters: with [array.cover], and on a surface with optics that
+// depend on the angle. `known`: the array of a run with the same lamps, whose spectra are not
+// evaluated again.
 ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known = nullptr);
 
-// The light on the cells: of a traced run, with that on the back by its bifaciality.
+// Light on the cells in a traced run; light on the back is weighted by the bifaciality.
 ArrayLight light_on(const ArrayPower& array, const OpticalRun& run, std::span<const BinSums> sums);
 
-// In the steady state where the temperature of the cells is not stated. InputError where they
-// deliver more than they absorb.
+// Computes the array, in the steady state unless the temperature of the cells is stated. Throws
+// InputError if the cells deliver more than they absorb.
 ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result);
 
-// `array` with its cells at the temperature of `result`, in any light.
+// `array` with the temperature of its cells fixed at that of `result`.
 ArrayPower held_at(ArrayPower array, const ArrayResult& result);
 
-// "steady state: both faces in still air of 293.15 K, emissivity 0.84", or "as stated".
+// Text such as "steady state: both faces in still air of 293.15 K, emissivity 0.84", or "as
+// stated".
 std::string origin_of_temperature(const ArrayDesign& design);
-// "331 K (58 °C)"
+// Text such as "331 K (58 °C)".
 std::string show_temperature(double kelvin);
-// A warning of cells that are warmer than they are rated; none where they are not.
+// Warning for cells above their rated temperature; empty otherwise.
 std::optional<std::string> above_rated(const ArrayDesign& design, double kelvin);
 
-// array_product() and the fractions that need the emitted power: "illumination_efficiency" (power
-// on the cells over emitted) and "light_to_electric_efficiency".
-// And the table "cell_temperature": its origin, and the loss of power per kelvin.
+// array_product() with the fractions that need the emitted power: "illumination_efficiency" (power
+// on the cells over emitted power) and "light_to_electric_efficiency"; and the table
+// "cell_temperature" with its origin and the loss of power per kelvin.
 Product array_power_product(const ArrayDesign& design, const ArrayResult& array,
                             const TraceResult& result);
 

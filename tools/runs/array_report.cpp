@@ -11,9 +11,9 @@
 namespace photorque {
 namespace {
 
-// ---- What a published power and efficiency require of an array, by physics.
+// ---- Physical requirements of a published power and efficiency.
 
-// Ours for a published power of the array; nothing for other figures.
+// Computed value for a published power of the array; empty for other figures.
 std::optional<double> power_of(const ArrayResult& result, const std::string& quantity) {
   if (quantity == "array_power_W") return result.power_W.value;
   if (quantity == "power_of_cells_alone_W") return result.sum_of_cells_W.value;
@@ -35,7 +35,8 @@ void print_requirements(const Console& console, const ArrayTarget& target,
                            : ""));
 }
 
-// Tilted, an array shows the cosine of its area; a published power below that shows further losses.
+// Published powers of the tilted array, compared with the cosine of its tilt. A lower published
+// power indicates further losses.
 Table tilted_table(const Console& console, const ArrayTarget& target,
                    const std::vector<PublishedFigure>& published, const ArrayResult& result,
                    double tilt_rad) {
@@ -74,7 +75,7 @@ Table known_cell_table(const Console& console, const ArrayDesign& design, const 
                        double irradiance_W_m2) {
   Table known = Table::of("known_cells", "Known cells in this light");
   for (const double irradiance : {1000.0, irradiance_W_m2}) {
-    if (!(irradiance > 0.0)) continue;  // no light falls on the array
+    if (!(irradiance > 0.0)) continue;  // the array is dark
     console.line("  known cells at " + show(irradiance) + " W/m²:");
     for (const CellFigures& f : known_cell_figures(
              irradiance, light.photon_V, light.quantum_efficiency, design.temperature_K)) {
@@ -119,7 +120,7 @@ Product target_report(const Console& console, const ArrayTarget& target,
   return product;
 }
 
-// ---- Trackers, losses, a day, a wiring.
+// ---- Trackers, losses, a day, the wiring.
 
 CellTables tables_for(const ArrayPower& array, const ArrayResult& result,
                       const std::vector<std::vector<double>>& lights) {
@@ -189,7 +190,7 @@ LossInputs loss_inputs(const ArrayPower& array, const OpticalRun& run, const Tra
   return in;
 }
 
-// Rounding may leave a little more than there was.
+// Fraction lost between two stages. Rounding can make it slightly negative; then it is zero.
 double lost_fraction(const LossStage& before, const LossStage& after) {
   const double lost = 1.0 - after.power_W / before.power_W;
   return lost > 1e-12 ? lost : 0.0;
@@ -217,7 +218,7 @@ void print_uniformity(const Console& console, const Table& table) {
   }
 }
 
-// The cells as `result` has them, free to cool and to warm up.
+// The array at the temperature of `result`, which may change during the day.
 ArrayDesign day_design(ArrayDesign design, const ArrayResult& result) {
   design.temperature_K = result.temperature_K.value;
   return design;

@@ -1,4 +1,4 @@
-// Results of `power` beyond the maximum power point: losses, trackers, a day, a target, a wiring.
+// Results of `power` beyond the maximum power point: losses, trackers, a day, a target, wiring.
 #pragma once
 
 #include <optional>
@@ -14,8 +14,8 @@ namespace photorque {
 
 struct ArrayPower;
 
-// [array.target], at zero tilt. A key that is left out is the figure "array_power_W" or
-// "array_efficiency" of the experiment's [[published]] at zero tilt.
+// [array.target] at zero tilt. Missing keys are taken from "array_power_W" and "array_efficiency"
+// in the experiment's [[published]] at zero tilt.
 struct ArrayTarget {
   double power_W = 0.0;
   double efficiency = 0.0;  // of the light on the cells
@@ -28,24 +28,25 @@ struct ArrayReport {
     std::optional<double> wall_plug, collimator, converter;
   } chain;
   std::optional<ArrayTarget> target;  // [array.target]
-  // [array.tracker]: see read_trackers(); and the motion during which they run, instant by instant.
-  // The scene is traced at each.
+  // [array.tracker]: trackers (see read_trackers()) and the motion during which they run. The scene
+  // is traced at each instant.
   struct Motion {
     std::vector<double> time_s, tilt_rad, heading_rad;
     std::vector<Tracker> trackers;
   };
   std::optional<Motion> motion;
   std::optional<DaySettings> day;  // [array.day], see read_day()
-  // [array.layout]: max_tried = 2000. Over the attitudes of the motion, or the one that is traced.
+  // [array.layout]: max_tried = 2000. For the attitudes of the motion, or the traced one.
   std::optional<int64_t> layout_most_tried;
   std::vector<PublishedFigure> published;  // [[published]], compared with the target
 };
 
+// Reads the sub-tables of `[array]`. Throws InputError for invalid keys.
 ArrayReport read_array_report(const Settings& array, std::vector<PublishedFigure> published);
-// [array] with the keys of its design.
+// Key [array] including the keys of its design.
 Key array_table();
 
-// Traces, computes and prints all that was asked for; the losses always.
+// Traces, computes and prints all requested results; losses are always included.
 Product report_array(const Console& console, const OpticalRun& run, const ArrayPower& array,
                      const TraceResult& traced, const ArrayResult& result);
 

@@ -1,4 +1,4 @@
-// [array] beyond the array: tables of further results of `power`.
+// [array]: tables of the additional results of `power`.
 #include <algorithm>
 
 #include "core/constants.h"
@@ -94,7 +94,7 @@ ArrayReport::Motion read_motion(const Settings& s) {
   using namespace motion_key;
   ArrayReport::Motion motion;
   motion.trackers = read_trackers(s);
-  // Without instants, the tracker is for `propagate`, in which the platform moves.
+  // Without instants, the tracker is meant for `propagate`, in which the platform moves.
   if (!s.has(motion_key::time) && !s.has(tilt)) return motion;
   motion.time_s = s.get(motion_key::time);
   motion.tilt_rad = s.get(tilt);

@@ -17,7 +17,7 @@ namespace {
 constexpr const char* optical_tables[] = {"scene", "material",   "source", "receiver", "attitude",
                                           "trace", "torque_map", "camera", "effect"};
 
-// The files that texts of the experiment name, relative to its folder.
+// Collects the files that texts of the experiment name, relative to its folder.
 void collect_files(const SettingsNode& node, const std::filesystem::path& folder,
                    std::vector<std::filesystem::path>& files) {
   if (const auto* text = std::get_if<std::string>(&node.value)) {
@@ -40,7 +40,7 @@ std::string brief(double value) {
   return printed("%.3g", value);
 }
 
-// Smallest height above a marker at which its light starts, for models without thickness.
+// Minimum height above a marker at which its light starts, for models without thickness.
 constexpr double least_height_m = 1e-4;
 
 bool is_shaded(const TraceableScene& scene, const Marker& marker, const Vec3& camera_body_m) {
@@ -64,7 +64,7 @@ std::string vector_override(size_t disturbance, const Vec3& v) {
                  v.z());
 }
 
-// False for a kind that is no text, too, which the reader of the table reports.
+// Also false for a kind that is not a text; the reader of the table reports this error.
 bool is_of_kind(const Settings& table, const std::string& kind) {
   if (!table.has("kind")) return false;
   const auto* name = std::get_if<std::string>(&table.raw("kind").value);
@@ -82,8 +82,8 @@ std::optional<Vec3> direction_of_sun_source(const ExperimentFile& file) {
   return to_sun;
 }
 
-// An orbit takes the direction of the sun of [[source]], and planet_light that of the orbit.
-// InputError where both name a direction and differ.
+// Overrides that give an orbit the direction of the sun of [[source]], and planet_light that of the
+// orbit. Throws InputError if both state different directions.
 std::vector<std::string> orbit_overrides(const ExperimentFile& file) {
   std::optional<Vec3> to_sun = direction_of_sun_source(file);
   const std::vector<Settings> disturbances = file.others("disturbance");

@@ -67,10 +67,10 @@ std::string show(double value) {
 std::string show(const Estimate& estimate, const std::string& unit) {
   const double error = estimate.standard_error;
   if (std::isinf(error)) return show(estimate.value) + " " + unit + " (undetermined)";
-  // The scatter of equal samples by rounding is no error.
+  // The scatter of equal samples due to rounding is not an error.
   const double rounding = 1e-12 * std::abs(estimate.value);
   if (!(error > rounding)) return show(estimate.value) + " " + unit;
-  // Two digits of the error decide how many of the value mean something; eight are printed.
+  // Two digits of the error determine the number of digits of the value, up to eight.
   const double largest = std::max(std::abs(estimate.value), error);
   const int exponent = magnitude(largest);
   const int last = std::max(magnitude(error) - 1, exponent - 7);
@@ -87,7 +87,7 @@ std::string show(const Estimate& estimate, const std::string& unit) {
 
 std::string show_percent(double fraction) {
   const double percent = 100.0 * fraction;
-  // Nearly all is not all.
+  // A fraction slightly below 1 must not be printed as 100 %.
   const bool is_nearly_all = percent != 100.0 && show_brief(percent) == "100";
   return (is_nearly_all ? show(1e-3 * std::round(1e3 * percent)) : show_brief(percent)) + " %";
 }

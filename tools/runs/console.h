@@ -9,29 +9,29 @@
 
 namespace photorque {
 
-// Where the words of a run go; what is empty stays unsaid. All but `line` may be called from any
-// thread.
+// Destinations of a run's output; output without a destination is dropped. All except `line` may be
+// called from any thread.
 struct ConsoleSinks {
-  std::function<void(const std::string&)> line;  // text, a line at a time
-  // A task and the fraction of it that is done, called often.
+  std::function<void(const std::string&)> line;  // text, one line per call
+  // A task and its completed fraction; called often.
   std::function<void(const std::string& what, double fraction)> progress;
-  std::function<void(const std::string&)> note;  // how far a long task is, in words
-  std::function<void()> done;                    // the task of `progress` is over
+  std::function<void(const std::string&)> note;  // progress of a long task as text
+  std::function<void()> done;                    // the task of `progress` is finished
   bool has_details = true;                       // details() are printed
 };
 
 class Console {
  public:
-  // Without sinks a run is silent.
+  // Without sinks a run has no output.
   explicit Console(ConsoleSinks sinks = {});
 
   void line(const std::string& text = "") const;
   void heading(const std::string& text) const;
 
-  // For output of --verbose only: silent without it.
+  // Console for details that are printed only with --verbose.
   Console details() const;
 
-  // For TraceOptions::progress and the like; empty without a listener.
+  // Function for TraceOptions::progress and similar; empty without a receiver of progress.
   std::function<void(double)> progress(const std::string& what) const;
   void note_progress(const std::string& text) const;
   void done() const;
@@ -40,19 +40,19 @@ class Console {
   ConsoleSinks sinks_;
 };
 
-// "79.112 ± 0.004 W": as many digits as the error supports; exact numbers with six.
+// "79.112 ± 0.004 W": the error determines the number of digits; exact numbers have six.
 std::string show(const Estimate& estimate, const std::string& unit);
-// "38.2 %" of a fraction, three digits.
+// A fraction in percent with three digits: "38.2 %".
 std::string show_percent(double fraction);
-// "3.4 h": seconds, minutes, hours or days, three digits.
+// A duration in seconds, minutes, hours or days with three digits: "3.4 h".
 std::string show_duration(double seconds);
 // Three significant digits, for checks and percentages: "2.02".
 std::string show_brief(double value);
-// The number of letters of a text in UTF-8, which may have several bytes each.
+// Number of characters of a UTF-8 text.
 size_t letters_of(std::string_view text);
-// Filled up to `width` letters; at least one space at the end.
+// Pads a text to `width` characters; at least one space at the end.
 std::string padded(std::string text, size_t width);
-// Six significant digits, exponents as ×10ⁿ: "1.127×10⁻⁹".
+// Six significant digits, with exponents as ×10ⁿ: "1.127×10⁻⁹".
 std::string show(double value);
 
 }  // namespace photorque

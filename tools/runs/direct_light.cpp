@@ -38,10 +38,10 @@ Estimate direct_bin_W(const FluxMapReceiver& map, const BinSums& sums, size_t bi
 // power.
 constexpr double ray_rounding = 1e-7;
 
-// `ray_W`: of one ray, on the mean. `counting_W`: see counting_error_W().
+// `ray_W`: mean power of one ray. `counting_W`: see counting_error_W().
 DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const BinSums& rays,
                     double ray_W, double counting_W, double emitted_W) {
-  constexpr double few = 100.0;     // rays: too few to estimate the error from their scatter
+  constexpr double few = 100.0;  // below this number of rays their scatter does not give the error
   constexpr double well_lit = 0.3;  // largest relative error of a bin by rays
   DirectLight light;
   light.name = map.name();
@@ -69,7 +69,7 @@ DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const 
   return light;
 }
 
-// The direct entries are the first of a receiver's.
+// Replaces the direct entries, which are the first of a receiver's bins.
 void replace_direct(const Gathered& gathered, BinSums& sums) {
   for (int r = 0; r < sums.replicates; ++r) {
     const auto direct = gathered.direct.of(r);
@@ -96,7 +96,8 @@ std::array<Estimate, 3> total_N_m(const TorqueMapReceiver& map, const BinSums& s
   return total;
 }
 
-// `scale_N_m`: of all the light, at the largest arm. `counting_N_m`: counting_error_W(), there too.
+// `scale_N_m`: torque of all the light at the largest arm. `counting_N_m`: counting_error_W() as a
+// torque at this arm.
 DirectTorque compare(const TorqueMapReceiver& map, const Gathered& gathered, const BinSums& rays,
                      double scale_N_m, double counting_N_m) {
   DirectTorque torque{map.name()};
@@ -110,7 +111,7 @@ DirectTorque compare(const TorqueMapReceiver& map, const Gathered& gathered, con
   return torque;
 }
 
-// `scale_N`: of all the light; `arm_m`: the largest.
+// `scale_N`: force of all the light; `arm_m`: the largest arm.
 DirectTorque compare(const WrenchReceiver& receiver, const Gathered& gathered, const BinSums& rays,
                      double scale_N, double counting_N, double arm_m) {
   BinSums own = rays;
@@ -160,7 +161,7 @@ struct Wanted {
   double force_N() const { return emitted_W / speed_of_light_m_s; }
   double counting_N() const { return counting_W / speed_of_light_m_s; }
 
-  // Whether quadrature takes less time than rays; otherwise prints a note.
+  // Whether quadrature takes less time than rays; otherwise adds a notice.
   bool pays(const std::string& what, size_t pairs) const {
     if (!weigh_cost || gathering_pays(pairs, rays)) return true;
     route.notices.push_back(cost_notice(what, pairs, rays));

@@ -1,5 +1,4 @@
-// Direct light both ways: gathered from the surface's side, and by the rays that it is checked
-// with.
+// Direct light by gathering, and its comparison with the direct light of the rays.
 #pragma once
 
 #include <cmath>
@@ -16,13 +15,14 @@ class WrenchGather;  // receivers/gather/bodies/wrench.h
 
 // Comparison of direct light on a flux map by quadrature and by rays.
 struct DirectLight {
-  size_t receiver = 0;  // its place among the experiment's
+  size_t receiver = 0;  // index among the experiment's receivers
   std::string name;
   Estimate gathered_W, rays_W;
   double difference_sigma = 0.0;  // of the totals, in standard errors of both
-  // Mean of (difference/error)² over the bins that the rays light well; about 1 + 2/replicates.
+  // Mean of (difference/error)² over the bins with enough rays; about 1 + 2/replicates.
   double mean_square = 0.0;
-  size_t open_pairs = 0, shaded_pairs = 0;  // of bins and beams: by quadrature, by shadow rays
+  // Pairs of bins and beams, by quadrature and by shadow rays.
+  size_t open_pairs = 0, shaded_pairs = 0;
   uint64_t shadow_rays = 0;
 };
 
@@ -30,35 +30,36 @@ struct DirectLight {
 // quadrature and by rays.
 struct DirectTorque {
   std::string name;
-  double worst_sigma = 0.0;  // largest difference of a component in standard errors of both
+  double worst_sigma = 0.0;  // largest difference of a component, in standard errors of both
 };
 
-// Which way the direct light went.
+// Results that were computed by gathering.
 struct DirectRoute {
-  std::vector<DirectLight> gathered;   // by flux map; empty where rays alone had to do
-  std::vector<DirectTorque> torques;   // by torque map, likewise
-  std::vector<DirectTorque> wrenches;  // by wrench, likewise
-  std::vector<std::string> notices;  // one line for each map that was left to the rays for its cost
+  std::vector<DirectLight> gathered;   // by flux map; empty if only rays were possible
+  std::vector<DirectTorque> torques;   // by torque map; empty if only rays were possible
+  std::vector<DirectTorque> wrenches;  // by wrench; empty if only rays were possible
+  // one line for each map for which gathering would take too long
+  std::vector<std::string> notices;
 };
 
 // Replaces the direct light of every flat flux map in `result`, its torque on every flat torque
-// map, and its wrench on bodies, by what gather_direct(), gather_torque() and `bodies` find, where
-// the experiment requires it and sources and surfaces allow it, and says how it agrees with the
-// rays' own. An experiment with a target error always gathers, unless it says "rays". `bodies` is
-// of the experiment's beams, or null.
+// map, and its wrench on bodies, by the results of gather_direct(), gather_torque() and `bodies`.
+// Applies if the experiment requires it and sources and surfaces permit it; experiments with a
+// target error always gather, except with "rays". Returns the comparison with the rays. `bodies`
+// belongs to the experiment's beams, or is null.
 DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scene,
                         const WrenchGather* bodies, const RigidTransform& lab_from_body,
                         const TraceOptions& options, TraceResult& result);
 
-// The error of a power that counts rays, where the replicates do not show it: Sobol points can meet
-// a surface equally often in all of them, and still be off by part of a ray in each. One ray of
-// each replicate, in the mean of all.
+// Error of a power that is a count of rays, if the replicates do not show it: Sobol points can meet
+// a surface equally often in all replicates and still be off by part of a ray in each. One ray per
+// replicate, in the mean over all.
 inline double counting_error_W(const TraceResult& result, int replicates) {
   return result.sent_W / static_cast<double>(result.rays) * std::sqrt(replicates);
 }
 
-// Largest relative standard error of any bin of any flux map with more than a tenth of the map's
-// largest irradiance.
+// Largest relative standard error of the bins of all flux maps that exceed a tenth of their map's
+// maximum irradiance.
 double worst_bin_error(const Experiment& experiment, const TraceResult& result);
 
 }  // namespace photorque

@@ -6,7 +6,7 @@
 namespace photorque {
 namespace {
 
-// The lamps of one [[source]], which are called NAME or NAME[0], NAME[1], …
+// The lamps of one [[source]]: their names are NAME or NAME[0], NAME[1], …
 std::vector<Beam> beams_of(const Experiment& experiment, const Settings& source) {
   const std::string name = source.text_or("name", source.text_or("kind", ""));
   std::vector<Beam> beams;
@@ -30,7 +30,7 @@ struct FewRays {
   }
 };
 
-// A fraction of what a source emits: more than slips through cracks, less than one lamp of a
+// Fraction of a source's emission: more than the loss through cracks, less than one lamp of a
 // thousand.
 constexpr double noticeable = 1e-3;
 
@@ -44,14 +44,14 @@ std::string inside_of(const Experiment& experiment, const InsideLightReceiver& i
   return "";
 }
 
-// Whether the faces of a part look into it: the volume that they enclose is then negative (the sum
-// of the tetrahedra from the origin to each face).
+// Whether the faces of a part point inwards: then the enclosed volume (sum of the tetrahedra from
+// the origin to each face) is negative.
 bool is_turned_inwards(const Scene& scene, const std::string& path) {
   double six_volumes_m3 = 0.0;
   for (const Instance& instance : scene.instances) {
     if (instance.path != path) continue;
     const Mesh& mesh = scene.meshes[instance.mesh];
-    // A mirrored instance is traced with its winding swapped.
+    // A mirrored instance is traced with reversed winding.
     const double sign = instance.body_from_mesh.linear().determinant() < 0.0 ? -1.0 : 1.0;
     for (const auto& face : mesh.triangles) {
       const auto corner = [&](size_t k) {
@@ -63,7 +63,7 @@ bool is_turned_inwards(const Scene& scene, const std::string& path) {
   return six_volumes_m3 < 0.0;
 }
 
-// A sun is nowhere: its light starts outside of everything.
+// Whether a source has a position; the light of a sun starts outside all parts.
 bool has_place(const std::vector<Beam>& beams) {
   return std::ranges::any_of(beams, [](const Beam& beam) {
     return !beam.aperture || !std::isinf(beam.aperture->radius_m);
@@ -86,7 +86,7 @@ std::vector<InputError> unlit_receiver_errors(const OpticalRun& run) {
   std::vector<double> on_receiver_W(experiment.receivers.size(), 0.0);
   for (const Settings& source : experiment.file.sources) {
     const std::vector<Beam> beams = beams_of(experiment, source);
-    if (beams.empty()) continue;  // another source's name shadows it
+    if (beams.empty()) continue;  // another source has the same name
     const TraceResult result =
         trace(run.scene(), experiment.lab_from_body, beams, few.receivers, few.options);
     const double emitted_W = result.power_balance.emitted_W;
@@ -107,7 +107,7 @@ std::vector<InputError> unlit_receiver_errors(const OpticalRun& run) {
       on_receiver_W[i] += lit_W(experiment.receivers[i], result.sums[i]);
     }
   }
-  if (!mistakes.empty()) return mistakes;  // which state why maps are dark
+  if (!mistakes.empty()) return mistakes;  // These mistakes explain dark maps.
   for (size_t i = 0; i < experiment.file.receivers.size(); ++i) {
     const NamedReceiver& receiver = experiment.receivers[i];
     if (!receiver.flux_map || on_receiver_W[i] > 0.0) continue;

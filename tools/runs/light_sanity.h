@@ -1,4 +1,4 @@
-// Whether the light of an experiment can be meant: found by a few rays.
+// Plausibility test of the light of an experiment with a few rays.
 #pragma once
 
 #include <vector>

@@ -31,7 +31,7 @@ std::optional<uint64_t> available_bytes() {
   return std::nullopt;
 }
 
-// Memory that a container or a job of a cluster may still use.
+// Memory that a container or cluster job may still use.
 std::optional<uint64_t> left_of_group_bytes() {
   const auto most = number_of_file("/sys/fs/cgroup/memory.max");
   const auto taken = number_of_file("/sys/fs/cgroup/memory.current");

@@ -1,4 +1,4 @@
-// Memory: the memory that a run needs, reported before it starts.
+// Memory requirements of a run, checked before it starts.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,12 @@
 
 namespace photorque {
 
-// Memory that a run may use [bytes]: what the user allows (--max-memory), else nine tenths of what
-// the machine, or the control group that the process lives in, has free; no limit where neither is
-// known.
+// Memory that a run may use [bytes]: the user's limit (--max-memory), otherwise nine tenths of the
+// free memory of the machine or of the process's control group; unlimited if neither is known.
 uint64_t memory_limit_bytes(std::optional<double> allowed_GB);
 
-// Sets the memory allowed by the user as a limit of the process. An allocation beyond it ends the
-// run with "not enough memory" and exit status 3.
+// Sets the user's limit for the process. An allocation beyond it ends the run with "not enough
+// memory" and exit status 3.
 void set_memory_limit(std::optional<double> allowed_GB);
 
 // Throws InputError at `where` if about `bytes` for `what` exceed the limit.

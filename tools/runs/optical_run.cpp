@@ -19,7 +19,7 @@
 namespace photorque {
 namespace {
 
-// Notices for maps on surfaces in several layers, whose light is summed in the same bins.
+// Adds notices for maps on surfaces in several layers, whose light is added in the same bins.
 void add_notices_of_layers(Experiment& experiment) {
   constexpr double noticeable = 1e-3;
   for (const NamedReceiver& receiver : experiment.receivers) {
@@ -52,7 +52,7 @@ Experiment read(const RunOptions& options) {
   return experiment;
 }
 
-// The first wrench receiver that sees every instance; adds one if there is none.
+// Index of the first wrench receiver that contains every instance; adds one if there is none.
 size_t whole_wrench(Experiment& experiment) {
   std::vector<uint32_t> all(experiment.scene.instances.size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<uint32_t>(i);
@@ -60,7 +60,8 @@ size_t whole_wrench(Experiment& experiment) {
     const auto& wrench = experiment.receivers[i].wrench;
     if (wrench && wrench->part_names().size() == all.size()) return i;
   }
-  // Two receivers named "body" would overwrite each other's files; reported before the trace.
+  // Two receivers named "body" would overwrite each other's files. This is reported before the
+  // trace.
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
     const NamedReceiver& other = experiment.receivers[i];
     if (other.wrench && other.name == "body") {
@@ -73,8 +74,8 @@ size_t whole_wrench(Experiment& experiment) {
   return experiment.receivers.size() - 1;
 }
 
-// The largest disagreement, in standard errors, between the force and torque summed over surfaces
-// and the same from the rays alone.
+// Largest difference, in standard errors, between force and torque summed over surfaces and those
+// computed from the rays alone.
 double momentum_disagreement(const OpticalRun& run, const OpticalResult& result) {
   const PowerBalance& power_balance = result.power_balance;
   const BinSums& sums = result.sums[run.wrench_index()];
@@ -95,7 +96,7 @@ double momentum_disagreement(const OpticalRun& run, const OpticalResult& result)
   return worst;
 }
 
-// Checks before the trace that its maps fit into memory.
+// Checks before the trace that the maps fit into memory.
 Experiment checked(Experiment experiment, const RunOptions& options) {
   const int threads =
       options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
@@ -141,7 +142,7 @@ void OpticalRun::keep_beams(const std::function<bool(const Beam&)>& wanted) {
   bodies_.reset();
 }
 
-// Made when it is first asked for.
+// Created on first use.
 std::shared_ptr<const WrenchGather> OpticalRun::bodies() const {
   const std::lock_guard lock(*bodies_mutex_);
   if (!bodies_) bodies_ = WrenchGather::make(scene_, experiment_.beams);
@@ -155,7 +156,7 @@ OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
   const TraceEffort& effort = experiment_.file.effort;
   TraceOptions options = experiment_.file.trace;
   options.rays = rays.value_or(options.rays);
-  // A sequence has at most 2^31 points (see trace()).
+  // A Sobol sequence has at most 2^31 points (see trace()).
   const uint64_t max_rays =
       std::min<uint64_t>(1ull << 38, static_cast<uint64_t>(options.replicates) << 31);
   options.threads = threads_;
@@ -177,9 +178,10 @@ OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
 
 namespace {
 
-// Standard errors from so many replicates that chance exceeds as seldom as 4 of a normal variable
-// (once in 16,000), by Student's distribution: 5.5 of 16 replicates.
-// Source: M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions" (1964), 26.7.5.
+// Number of standard errors, from this number of replicates, that is exceeded by chance as rarely
+// as 4 standard deviations of a normal variable (once in 16,000). By Student's distribution it is
+// 5.5 for 16 replicates. Source: M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions"
+// (1964), 26.7.5.
 double notice_level_sigma(int replicates) {
   constexpr double z = 4.0, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
   const double n = replicates - 1;
@@ -190,7 +192,7 @@ double notice_level_sigma(int replicates) {
 }  // namespace
 
 std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const {
-  // The likely causes and remedies.
+  // Likely causes and remedies.
   constexpr const char* rarely_met =
       ": few rays carry much of it; raise trace.rays until the figure falls";
   constexpr const char* by_edges =
@@ -328,7 +330,8 @@ Provenance Warnings::into(Provenance provenance) const {
 
 namespace {
 
-// A perfect mirror absorbs nothing either, but it is pushed.
+// Whether all light misses the scene. A perfect mirror absorbs nothing either, but light exerts a
+// force on it.
 bool misses_everything(const PowerBalance& balance) {
   return balance.absorbed_W.value == 0.0 && balance.truncated_W.value == 0.0 &&
          std::ranges::all_of(balance.force_N, [](const Estimate& f) { return f.value == 0.0; });

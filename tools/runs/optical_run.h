@@ -1,4 +1,4 @@
-// Shared by the optical commands: experiment → trace → products → files.
+// Common functions of the optical commands: experiment → trace → products → files.
 #pragma once
 
 #include <functional>
@@ -21,15 +21,15 @@
 
 namespace photorque {
 
-// The result of a run: the trace, the direct light of its flux maps gathered where possible.
+// Result of a run: the trace, with the direct light of its flux maps by gathering if possible.
 struct OpticalResult : TraceResult {
   DirectRoute direct;
   double wall_s = 0.0;
   double worst_bin_error = 0.0;  // see worst_bin_error()
 };
 
-// An experiment made ready to trace: its scene built once, its receivers, always a wrench over the
-// whole scene ("body", added if the experiment names none), and a watch over closed parts.
+// An experiment prepared for tracing: its scene, its receivers, always a wrench of the whole scene
+// ("body", added if the experiment has none), and a receiver for light inside closed parts.
 class OpticalRun {
  public:
   // Reads the experiment; prints its notices and the shapes of its sources.
@@ -38,33 +38,33 @@ class OpticalRun {
   const Experiment& experiment() const { return experiment_; }
   const TraceableScene& scene() const { return scene_; }
   const Provenance& provenance() const { return provenance_; }
-  // Provenance with a warning for each self-check of this result that fails.
+  // Provenance with one warning per failed self-check of this result.
   Provenance provenance(const OpticalResult& result) const;
-  // One line for each self-check that is off by more than four of its standard errors: the two
-  // routes to direct light and to force and torque; or power that was lost.
+  // One line per self-check that is off by more than four standard errors: direct light computed in
+  // two ways, force and torque computed in two ways, lost power.
   std::vector<std::string> warnings(const OpticalResult& result) const;
 
   // Adds a warning for all later runs.
   void warn(std::string line) { experiment_.warnings.push_back(std::move(line)); }
 
-  // Adds one that is not in the experiment file, for all later runs; returns its index.
+  // Adds a receiver that is not in the experiment file, for all later runs; returns its index.
   size_t add_receiver(NamedReceiver receiver);
 
-  // Leaves out, for all later runs, the lamps that are not wanted.
+  // Removes the lamps for which `wanted` is false, for all later runs.
   void keep_beams(const std::function<bool(const Beam&)>& wanted);
 
-  // Traces at an attitude, with the options of the experiment but, if given, another number of
-  // rays; goes on with twice the rays until the experiment's target error or time is reached.
+  // Traces at an attitude with the options of the experiment or with another number of rays.
+  // Doubles the rays until the experiment's target error or time is reached.
   OpticalResult run(const RigidTransform& lab_from_body,
                     const std::function<void(double)>& progress,
                     std::optional<uint64_t> rays = {}) const;
 
-  // The place of a receiver among experiment().receivers and TraceResult::sums.
+  // Index of the wrench of the whole scene in experiment().receivers and TraceResult::sums.
   size_t wrench_index() const { return wrench_; }
-  // The place of the first receiver that is a flux map.
+  // Index of the first receiver that is a flux map.
   std::optional<size_t> first_flux_map() const;
-  // The flux map called `name`, or the first one if `name` is empty. InputError that names `key` if
-  // there is none.
+  // Index of the flux map called `name`, or of the first one if `name` is empty. Throws InputError
+  // with `key` if there is none.
   size_t flux_map_index(const std::string& name, const std::string& key = "array.receiver") const;
 
   const WrenchReceiver& wrench() const;
@@ -82,31 +82,32 @@ class OpticalRun {
   TraceableScene scene_;
   Provenance provenance_;
   size_t wrench_ = 0;
-  std::shared_ptr<const InsideLightReceiver> inside_light_;  // null where no part is closed
-  size_t inside_index_ = 0;                                  // its place among the receivers
+  std::shared_ptr<const InsideLightReceiver> inside_light_;  // null if no part is closed
+  size_t inside_index_ = 0;                                  // index among the receivers
   int threads_ = 0;
-  // Gathers the wrench of direct light, created on first use; null inside where rays must do.
+  // Gatherer of the wrench of direct light, created on first use; contains null if only rays are
+  // possible.
   mutable std::optional<std::shared_ptr<const WrenchGather>> bodies_;
   std::unique_ptr<std::mutex> bodies_mutex_ = std::make_unique<std::mutex>();
 };
 
-// One of several attitudes of a run, as it was traced.
+// A traced attitude of a run with several attitudes.
 struct TracedNode {
   const OpticalRun& run;
-  size_t nodes;  // how many there are
+  size_t nodes;  // total number
   RigidTransform lab_from_body;
   const OpticalResult& light;
-  std::optional<Estimate> electric_W = {};  // of the array, where there is one
+  std::optional<Estimate> electric_W = {};  // of the array, if there is one
 };
-// In the order of the nodes.
+// Called in the order of the nodes.
 using NodeWatch = std::function<void(const TracedNode&)>;
 
-// The warnings of several runs, each once: at most three in full, then how many more there are.
+// Warnings of several runs, each once: at most three in full, then the number of further ones.
 class Warnings {
  public:
-  // `where` names the run: "tilt 5 deg, heading 0".
+  // `where` identifies the run: "tilt 5 deg, heading 0".
   void add(const std::vector<std::string>& warnings, const std::string& where);
-  // Prints the results, and adds them to the output.
+  // Print the warnings, and add them to the provenance.
   void print(const Console& console) const;
   Provenance into(Provenance provenance) const;
 
@@ -117,7 +118,7 @@ class Warnings {
   size_t count_ = 0;
 };
 
-// The power balance and the effects of the light, as text.
+// Prints the power balance and the effects of the light.
 void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result);
 
 // Adds the items of `more` to `product`.

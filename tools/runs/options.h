@@ -1,4 +1,4 @@
-// Options of a run: the program's command line or a caller from Python.
+// Options of a run, from the command line or from Python.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,29 @@
 
 namespace photorque {
 
-// A lamp that no experiment file describes, and the hash of its light for the provenance.
+// A lamp that is not in the experiment file, and the hash of its light for the provenance.
 struct FurtherLamp {
   Beam beam;
   std::string hash;
 };
 
 struct RunOptions {
-  // The experiment's file. With a given text it need not exist: it is what messages call the text,
+  // The experiment's file. If `text` is set, it need not exist; then it is the name in messages,
   // and files that the text names are relative to its folder.
   std::filesystem::path experiment;
   std::optional<std::string> text;      // TOML in place of the file's text
   std::vector<std::string> overrides;   // KEY=VALUE, in order
   int threads = 0;                      // 0: all
-  std::optional<uint64_t> seed;         // over the experiment's own
-  std::optional<double> target_error;   // over [trace] target_error
-  std::optional<double> max_time_s;     // over [trace] max_time_s
-  bool allow_outside = false;           // over [scene] allow_outside
-  std::optional<double> max_memory_GB;  // limit of the run; nothing: free memory
-  std::vector<FurtherLamp> lamps = {};  // that shine besides those of the experiment
+  std::optional<uint64_t> seed;         // replaces the experiment's seed
+  std::optional<double> target_error;   // replaces [trace] target_error
+  std::optional<double> max_time_s;     // replaces [trace] max_time_s
+  bool allow_outside = false;           // replaces [scene] allow_outside
+  std::optional<double> max_memory_GB;  // memory limit of the run; empty: free memory
+  std::vector<FurtherLamp> lamps = {};  // in addition to those of the experiment
 
-  // The text, or that of the file.
+  // `text`, or the text of the file.
   std::string experiment_text() const;
-  // The overrides with seed, target and time of the trace among them.
+  // The overrides, including those from seed, target error and time.
   std::vector<std::string> all_overrides() const;
 };
 

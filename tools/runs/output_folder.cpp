@@ -24,8 +24,8 @@ InputError refused(const fs::path& path, const std::string& found, const std::st
   return {{path.string()}, "--out", found, expected};
 }
 
-// The process that cleans up after a stopped run (Interruption) holds its lock for some
-// milliseconds more.
+// Takes the lock of the folder. The process that cleans up after a stopped run (Interruption) holds
+// it for some milliseconds, therefore it is tried several times.
 bool take_lock(int descriptor, int how, bool waits) {
   constexpr int tries = 50, apart_us = 20'000;
   if (waits) return ::flock(descriptor, how) == 0;
@@ -36,14 +36,14 @@ bool take_lock(int descriptor, int how, bool waits) {
   return true;
 }
 
-constexpr int stop_waiting = SIGUSR2;  // from the destructor
+constexpr int stop_waiting = SIGUSR2;  // sent by the destructor
 
-// The folder itself, without links and dots: what is made of it can be removed again.
+// Path of the folder without links and dots, so that folders created on it can be removed again.
 fs::path place_of(const fs::path& folder) {
   std::error_code failure;
   const fs::path place = fs::weakly_canonical(fs::absolute(folder), failure);
   if (failure) return fs::absolute(folder);
-  return place.has_filename() ? place : place.parent_path();  // without a slash at the end
+  return place.has_filename() ? place : place.parent_path();  // without a trailing slash
 }
 
 // Folders that belong to the system or to all users.
@@ -62,8 +62,8 @@ bool is_of_the_system(const fs::path& place) {
          });
 }
 
-// Results do not spill into folders of others. Those of earlier runs may: some file systems give
-// every file to one user.
+// Results are not written into folders of other users, except those of earlier runs: some file
+// systems assign all files to one user.
 void require_own(const fs::path& place) {
   if (is_of_the_system(place)) {
     throw refused(place, "a folder of the system", "a folder that belongs to you, or a new one");
@@ -95,7 +95,7 @@ OutputFolder::OutputFolder(const fs::path& path, Others others) : path_(place_of
 }
 
 OutputFolder::~OutputFolder() {
-  remove_empty();  // before the lock goes
+  remove_empty();  // before the lock is released
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
@@ -111,7 +111,7 @@ void OutputFolder::make() {
   make_folders(path_, "--out");
 }
 
-// A page of bytes, as a full disk takes the name of a file but nothing in it.
+// Writes a page of bytes: on a full disk a file can be created, but not filled.
 void OutputFolder::try_to_write() const {
   const fs::path trial = temporary_beside(path_ / "trial");
   const int file =
@@ -132,7 +132,7 @@ void OutputFolder::try_to_write() const {
   }
 }
 
-// False when the folder that was locked is not the one of this name any more.
+// Returns false if the locked folder is no longer the one of this name.
 bool OutputFolder::lock(Others others) {
   if (descriptor_ >= 0) ::close(descriptor_);
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -162,7 +162,7 @@ void OutputFolder::remove_empty() const {
 
 Interruption::Interruption() {
   sigemptyset(&signals_);
-  // Batch systems announce their limits by SIGUSR1, SIGUSR2 and SIGXCPU.
+  // Batch systems announce their limits with SIGUSR1, SIGUSR2 and SIGXCPU.
   for (const int signal :
        {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGALRM, SIGUSR1, SIGXCPU, stop_waiting}) {
     struct sigaction now {};
@@ -213,9 +213,10 @@ void Interruption::clean(pid_t process) const {
   }
 }
 
-// The other threads still work, and one may make a temporary file after all are removed. So a
-// child, which has none of these threads, waits until this process is gone and looks again; not
-// even that is left to chance where the child is killed with it (the first process of a container).
+// The other threads are still running, and may create a temporary file after all have been removed.
+// Therefore a child process, which lacks these threads, waits until this process has ended and
+// removes files again. The files are also removed here first, because the child may be killed
+// together with this process (the first process of a container).
 void Interruption::end(int signal) {
   const std::scoped_lock lock(mutex_);
   const pid_t parent = ::getpid();

@@ -1,5 +1,5 @@
-// The folder that a command writes into: made, tried, locked and cleaned before the work; left
-// clean when a signal ends the program.
+// Output folder of a command: created, tested, locked and cleaned before the work; left clean if a
+// signal ends the program.
 #pragma once
 
 #include <atomic>
@@ -11,17 +11,17 @@
 
 namespace photorque {
 
-// A folder in which one run works. What killed runs left in it is removed. When it ends, folders
-// that it made and that are still empty go away.
+// A folder in which one run works. Temporary files of killed runs in it are removed. The destructor
+// removes folders that it created and that are still empty.
 class OutputFolder {
  public:
-  // Handling of other runs that work in the folder: refuse to; let those in that share as well;
-  // wait until they are done.
+  // If another run works in the folder: throw an error; share it with runs that share it, too; or
+  // wait until it ends.
   enum class Others { refuse, share, wait };
 
-  // InputError when `path` is no folder or cannot be one, when it belongs to the system or to
-  // another user, when a file in it cannot be written, or when another run works there. (File
-  // systems without locks: no other is excluded.)
+  // Throws InputError if `path` cannot be a folder, belongs to the system or to another user, is
+  // not writable, or is used by another run. (On file systems without locks other runs are not
+  // detected.)
   OutputFolder(const std::filesystem::path& path, Others others);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -33,17 +33,15 @@ class OutputFolder {
   bool lock(Others others);
   void remove_empty() const;
 
-  std::filesystem::path path_, made_;  // absolute; the outermost folder that was not there
+  std::filesystem::path path_, made_;  // absolute; the outermost folder that was created
   int descriptor_ = -1;
 };
 
-// Ctrl-C, SIGTERM, SIGHUP and others: the program ends at once and leaves no half-written file
-// behind.
+// Ctrl-C, SIGTERM, SIGHUP and others: the program ends at once without leaving incomplete files.
 //
-// Made first thing in main(), before other threads are, which inherit that they are not to be
-// interrupted: one thread waits for the signals, removes the temporary files of the folders in use,
-// and lets the signal end the program, as its parent process expects. Signals that are ignored
-// (nohup) stay so.
+// Create it at the start of main(), before other threads, which inherit the blocked signals. One
+// thread waits for the signals and removes the temporary files of the folders in use. It then lets
+// the signal end the program, as its parent process expects. Ignored signals (nohup) stay ignored.
 class Interruption {
  public:
   Interruption();
@@ -51,7 +49,7 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  // A folder in use, and those above it that are not there yet, as long as it lives.
+  // A folder in use, together with missing folders above it, during the lifetime of this object.
   class Watch {
    public:
     Watch(Interruption& interruption, const std::filesystem::path& folder);
@@ -66,7 +64,7 @@ class Interruption {
  private:
   struct InUse {
     std::filesystem::path folder;
-    size_t missing = 0;  // folders at the end of the path that were not there
+    size_t missing = 0;  // number of folders at the end of the path that did not exist
   };
   void wait();
   void clean(pid_t process) const;

@@ -1,4 +1,4 @@
-// Published figures beside computed ones.
+// Comparison of computed figures with published ones.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@
 
 namespace photorque {
 
-// One `[[published]]` of an experiment file: a headline figure of summary.json, in the unit that
-// its name ends in, at a tilt.
+// One `[[published]]` of an experiment file: a figure of summary.json at a tilt, in the unit at the
+// end of its name.
 struct PublishedFigure {
   std::string quantity;
   double value = 0.0;
@@ -26,9 +26,9 @@ inline constexpr double same_tilt_rad = 1e-6;
 std::vector<PublishedFigure> read_published(const std::vector<Settings>& tables);
 Key published_table();
 
-// The table "published" of those figures that hold at this tilt and that `product` has, with the
-// ratio ours/published; prints it. Where any of them says what it is rounded to, also the quantity
-// "published_misfit", Σ ((ours − published)/(½ rounded_to))². Empty when no figure holds.
+// Table "published" of the figures at this tilt that `product` contains, with the ratio
+// ours/published; prints it. If any of them states its rounding, also the quantity
+// "published_misfit", Σ ((ours − published)/(½ rounded_to))². Empty if there is no such figure.
 Product compare_published(const std::vector<PublishedFigure>& figures, double tilt_rad,
                           const Product& product, const Console& console);
 

@@ -16,7 +16,7 @@ bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
   return std::ranges::find(names, name) != names.end();
 }
 
-// The maps that users script against, and tables where they are wanted.
+// The maps of irradiance, which users process with scripts, and on request the tables.
 Product with_irradiance_alone(const Product& product, bool tables) {
   Product part;
   for (const Map& map : product.maps) {

@@ -1,4 +1,4 @@
-// The results of a run.
+// Results of a run.
 #pragma once
 
 #include <chrono>
@@ -14,11 +14,12 @@
 
 namespace photorque {
 
-// A file beside those that the writers make of the product.
+// A file in addition to those that the writers make from the product.
 struct RunFile {
   std::string name;
-  std::function<void(const std::filesystem::path&)> write;  // to this path, whole or not at all
-  std::string remark = {};                                  // a remark, as printed
+  // Writes to this path, completely or not at all.
+  std::function<void(const std::filesystem::path&)> write;
+  std::string remark = {};  // printed with the file name
 };
 
 struct RunResult {
@@ -30,28 +31,28 @@ struct RunResult {
   std::string summary() const { return summary_json(product, provenance, cost); }
 };
 
-// NumericalError for a headline figure that came out as no finite number.
+// Throws NumericalError if a main figure is not a finite number.
 void check_figures(const RunResult& result);
 
-// The files that a run is written as.
+// Formats in which a run is written.
 struct RunFormats {
-  std::vector<std::string> further = {};  // names of writer kinds, beside the usual files
+  std::vector<std::string> further = {};  // names of writer kinds, in addition to the usual files
   PictureStyle style = PictureStyle::page;
 };
 
-// Writes figures (PNG), tables (CSV), run.h5, the further files and summary.json into the folder,
-// all together and in place of what `command` wrote there last (StagedFiles). Maps of irradiance
-// are also written as EXR, TIFF and CSV; everything else in the further formats alone. Gives the
-// paths of the product's files. InputError for a format that does not exist.
+// Writes figures (PNG), tables (CSV), run.h5, the additional formats and summary.json into the
+// folder as a whole, replacing the last files of `command` there (StagedFiles). Maps of irradiance
+// are also written as EXR, TIFF and CSV; all else only in the additional formats. Returns the paths
+// of the product's files. Throws InputError for an unknown format.
 std::vector<std::filesystem::path> write_run(const RunResult& result,
                                              const std::filesystem::path& folder,
                                              const std::string& command = "run",
                                              const RunFormats& formats = {});
 
-// The formats that `list`, "exr,svg", names; InputError as for write_run().
+// Formats named in `list`, such as "exr,svg". Throws InputError like write_run().
 std::vector<std::string> formats_in(const std::string& list);
 
-// Seconds since `start`, for RunCost.
+// Measures the time since its construction [s], for RunCost.
 class WallTime {
  public:
   double elapsed_s() const {

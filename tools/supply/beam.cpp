@@ -1,4 +1,4 @@
-// Power by light: the experiment with lamps and array, traced at every tilt.
+// Power by light: an experiment with lamps and array, traced at every tilt.
 #include <filesystem>
 
 #include "tools/runs/array_power.h"

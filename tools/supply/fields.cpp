@@ -1,4 +1,4 @@
-// Power through fields: the microwave beam and the coils.
+// Power by fields: the microwave beam and the inductive link.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -75,8 +75,8 @@ constexpr UncertainNumberKey mass("mass_kg_m2", {2.0, 0.5}, Range::not_negative(
 constexpr TablesKey microwave("microwave", "a microwave beam");
 }  // namespace microwave_key
 
-// Fraction of what arrives at the rectenna that its elements take, and of what misses them that is
-// mirrored.
+// Fractions of the power at the rectenna: absorbed by its elements, and mirrored of the power that
+// misses them.
 struct RectennaAbsorption {
   double taken = 0.0, mirrored = 0.0;
 };
@@ -155,10 +155,10 @@ SpiralCoil read_coil(const Settings& table, const TableKey& key) {
   return coil;
 }
 
-// The pose of the pair of coils under tilt.
+// Coupling of the two coils at a tilt.
 struct CoilPose {
   double mutual_H = 0.0;
-  double torque_N_m_A2 = 0.0;  // on the platform, about the axis that tilts
+  double torque_N_m_A2 = 0.0;  // on the platform, about the axis of the tilt
   Vec3 receiver_axis = Vec3::UnitZ();
 };
 
@@ -177,8 +177,8 @@ std::vector<CoilPose> coil_poses(const SpiralCoil& transmitter, const SpiralCoil
   return poses;
 }
 
-// The least distance of the moving coil's turns from the ring that the fixed coil fills, over the
-// tilts; nothing where it would have to pass through.
+// Minimum distance, over the tilts, between the turns of the moving coil and the ring of the fixed
+// coil; empty if the coil would have to pass through it.
 std::optional<double> coil_clearance_m(const SpiralCoil& transmitter, const SpiralCoil& receiver,
                                        double transmitter_height_m, double receiver_height_m,
                                        const SupplyTask& task) {
@@ -261,7 +261,8 @@ SupplyOption induction_option(const Settings& s, const SupplyTask& task) {
         plain.mass_kg = receiver.copper_mass_kg();
         plain.source_W = task.load_W / (at[rectifier] * now.efficiency * at[inverter]);
         for (const CoilPose& pose : poses) {
-          // The current in the first coil is held; the second's follows the mutual inductance.
+          // The current in the first coil is constant; that in the second follows from the mutual
+          // inductance.
           const double ratio = pose.mutual_H / level.mutual_H;
           plain.delivered_W.push_back(task.load_W * ratio * ratio);
           plain.torque_N_m.push_back(ratio * now.mean_product_A2 * pose.torque_N_m_A2);

@@ -1,4 +1,4 @@
-// Supplies without transmission through air: the battery, and the cable that the others are to
+// Supplies without transmission through air: the battery and the cable, which the others would
 // replace.
 #include <cmath>
 
@@ -67,7 +67,7 @@ double lithium_torque_N_m(const SupplyTask& task, double electrodes_m, double ch
                           double tilt_rad) {
   const BatteryCell cell{Vec3::Zero(), Vec3(electrodes_m, 0.0, 0.0), 1.0};
   const double shift_m_C = com_shift_m_C({&cell, 1}, task.model.platform.mass_kg).x();
-  // The disturbance's key counts per ampere-hour.
+  // The disturbance's key is per ampere-hour.
   return disturbance_torque_N_m(task, "battery_discharge",
                                 {{"shift_m_per_Ah", {3600.0 * shift_m_C, 0.0, 0.0}}}, tilt_rad,
                                 charge_C);
@@ -129,7 +129,7 @@ SupplyOption cable_option(const Settings& s, const SupplyTask& task) {
         cable.insulation_modulus_Pa = at[modulus];
         PlainOption plain;
         plain.mass_kg = 0.5 * cable_mass_kg(cable);
-        // V I = P + R I², of the two currents the smaller.
+        // The smaller of the two currents that satisfy V I = P + R I².
         const double ohm = loop_resistance_ohm(cable);
         const double square_V2 = at[volts] * at[volts] - 4.0 * ohm * task.load_W;
         if (square_V2 < 0.0) {
@@ -140,7 +140,7 @@ SupplyOption cable_option(const Settings& s, const SupplyTask& task) {
         const double current_A = 2.0 * task.load_W / (at[volts] + std::sqrt(square_V2));
         plain.source_W = task.load_W + current_A * current_A * ohm;
         const double bending = bending_stiffness_N_m_rad(cable);
-        // Half of it is carried by the platform, half by the fixed end.
+        // Half of the cable is carried by the platform, half by the fixed end.
         const double hanging_N =
             0.5 * cable_mass_kg(cable) * task.model.environment.gravity_lab_m_s2.norm();
         for (const double tilt_rad : task.tilt_rad) {

@@ -1,4 +1,4 @@
-// The ways themselves, each from its table of [supply_trade].
+// The power supplies, each from its table of [supply_trade].
 #pragma once
 
 #include "tools/runs/console.h"
@@ -12,7 +12,8 @@ inline constexpr Range conversion_range{0.0, 1.0, true, false};
 
 // [supply_trade.battery]
 SupplyOption battery_option(const Settings& settings, const SupplyTask& task);
-// The torque of its lithium at a charge drawn, as a fraction of the task's charge, at zero tilt.
+// Torque due to its lithium at zero tilt, at a drawn charge given as a fraction of the task's
+// charge.
 double battery_torque_N_m(const Settings& settings, const SupplyTask& task, double fraction);
 
 // [supply_trade.cable]
@@ -24,7 +25,7 @@ SupplyOption microwave_option(const Settings& settings, const SupplyTask& task);
 // [supply_trade.induction]
 SupplyOption induction_option(const Settings& settings, const SupplyTask& task);
 
-// [[supply_trade.beam]]. Traces its experiment at every tilt and evaluates its array.
+// [[supply_trade.beam]]: traces its experiment at every tilt and evaluates its array.
 struct BeamSettings {
   std::string name, experiment;
   RunOptions run;
@@ -33,7 +34,7 @@ struct BeamSettings {
 BeamSettings read_beam(const Settings& settings, const RunOptions& options);
 SupplyOption beam_option(const BeamSettings& beam, const SupplyTask& task, const Console& console);
 
-// Their tables, as they are declared, and [supply_trade] with all of them.
+// Declarations of the tables, and of [supply_trade] with all of them.
 Key battery_table();
 Key cable_table();
 Key microwave_table();
@@ -41,7 +42,7 @@ Key induction_table();
 Key beam_table();
 Key supply_table();
 
-// The task in [supply_trade].
+// Task of the supplies in [supply_trade].
 SupplyTask read_supply_task(const Settings& root, const Settings& supply_trade);
 
 }  // namespace photorque

@@ -26,7 +26,7 @@ double figure(const SupplyOption* option, const std::string& name) {
   return none;
 }
 
-// The first way by light.
+// The first supply by light; null if there is none.
 const SupplyOption* first_beam(const SupplyTrade& trade) {
   for (const SupplyOption& option : trade.options) {
     if (!std::isnan(figure(&option, "emitted_W"))) return &option;
@@ -34,7 +34,7 @@ const SupplyOption* first_beam(const SupplyTrade& trade) {
   return nullptr;
 }
 
-// Efficiency of a named cell of 1 cm2 in sunlight of 1000 W/m2 with this short-circuit current.
+// Efficiency of a known cell of 1 cm² in sunlight of 1000 W/m² with this short-circuit current.
 double in_sunlight(const char* cell, double short_circuit_A) {
   for (const NamedCell& known : known_cells()) {
     if (known.name != cell) continue;
@@ -50,8 +50,8 @@ double efficiency(const SupplyOption* option, const SupplyTask& task) {
 
 }  // namespace
 
-// Photons above the gap in a blackbody's hemisphere, 2π/(h³c²) ∫ E² exp(−E/kT) dE, carry the dark
-// current; at the gap's energies the exponential is the whole of Planck's denominator.
+// The dark current is the photon flux above the gap from a blackbody into a hemisphere, 2π/(h³c²) ∫
+// E² exp(−E/kT) dE. At these energies Planck's denominator equals the exponential.
 double radiative_limit(double wavelength_m, double irradiance_W_m2, double gap_J,
                        double temperature_K) {
   const double thermal_J = boltzmann_J_K * temperature_K;
@@ -62,7 +62,8 @@ double radiative_limit(double wavelength_m, double irradiance_W_m2, double gap_J
                          (gap_J * gap_J + 2.0 * gap_J * thermal_J + 2.0 * thermal_J * thermal_J) *
                          std::exp(-gap_J / thermal_J);
   const double ratio = irradiance_W_m2 / photon_J / photons;  // photocurrent over dark current
-  // The maximum of v (ratio − e^v + 1), v = qV/kT: e^v (1 + v) = 1 + ratio, by Newton's method.
+  // Maximum of v (ratio − e^v + 1) with v = qV/kT: solve e^v (1 + v) = 1 + ratio by Newton's
+  // method.
   double v = std::log1p(ratio);
   for (int i = 0; i < 50; ++i) {
     v -= (v + std::log1p(v) - std::log1p(ratio)) / (1.0 + 1.0 / (1.0 + v));

@@ -75,7 +75,7 @@ Table charge_table(const SupplyTrade& trade) {
   return table;
 }
 
-// Smaller torques are not drawn, so that the logarithmic axis has fewer decades.
+// Smaller torques are not drawn, to limit the decades of the logarithmic axis.
 constexpr double least_torque_N_m = 1e-13;
 // At zero tilt the torque of light is zero; smaller values are the noise of the trace.
 constexpr double level_torque_N_m = 1e-10;
@@ -94,7 +94,7 @@ Plot tilt_plot(const SupplyTrade& trade) {
       const SupplyPoint& point = option.curve[t];
       delivered.x.push_back(tilt_deg);
       delivered.y.push_back(point.delivered_W.value);
-      // A torque with the mean zero, as of induction, is drawn with its standard error.
+      // A torque with zero mean, as of induction, is drawn with its standard error.
       const double size =
           std::max(std::abs(point.torque_N_m.value), point.torque_N_m.standard_error);
       if (size < least_torque_N_m || (t == 0 && size < level_torque_N_m)) continue;

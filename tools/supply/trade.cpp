@@ -106,7 +106,7 @@ double disturbance_torque_N_m(const SupplyTask& task, const std::string& kind,
 
 namespace {
 
-// A torque that averages out is as large as its error.
+// Magnitude of a torque; a torque with zero mean counts with its error.
 double size_of(const Estimate& x) {
   return std::max(std::abs(x.value), x.standard_error);
 }

@@ -13,11 +13,12 @@ namespace photorque {
 namespace {
 
 int64_t byte_of(const std::string& name) {
-  constexpr size_t digits = 15;  // of 60 bits: offsets are signed
+  constexpr size_t digits = 15;  // of 60 bits, because offsets are signed
   return static_cast<int64_t>(std::stoull(content_hash(name).substr(0, digits), nullptr, 16));
 }
 
-// Locks of the open file, not of the process: they hold between two of one process too.
+// These locks belong to the open file, not to the process, so that they also work between two users
+// in one process.
 bool lock_byte(int descriptor, int64_t byte, short how, bool wait) {
   struct flock range {};
   range.l_type = how;

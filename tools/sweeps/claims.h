@@ -7,15 +7,15 @@
 
 namespace photorque {
 
-// Claims on names, as locks on bytes of a file: the system lets go of them when a process ends,
-// however it ends. Two names share a byte once in 10^18 pairs; the second then waits. (File systems
-// without locks: everybody gets every claim.)
+// Claims on names, as locks on bytes of a file. The system releases them when a process ends for
+// any reason. Two names share a byte once in 10^18 pairs; the second then waits. (On file systems
+// without locks all claims succeed.)
 class Claims {
  public:
-  // A claim on a run; it ends with the last copy.
+  // A claim on a run; released by its last copy.
   using Claim = std::shared_ptr<const void>;
 
-  // The file is made if absent.
+  // Creates the file if it is missing.
   explicit Claims(const std::filesystem::path& path);
   ~Claims();
   Claims(const Claims&) = delete;
@@ -23,7 +23,7 @@ class Claims {
 
   // Claims a run; null if another process has it.
   Claim take(const std::string& name) const;
-  // When the others are done with it.
+  // Waits until other processes have released the name.
   Claim wait_for(const std::string& name) const;
 
  private:

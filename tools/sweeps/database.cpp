@@ -13,9 +13,9 @@
 namespace photorque {
 namespace {
 
-constexpr int application = 0x70687471;  // "phtq", in the file's head
+constexpr int application = 0x70687471;  // "phtq", in the file's header
 constexpr int format = 1;
-constexpr int timeout_ms = 60000;  // for another process that is writing
+constexpr int timeout_ms = 60000;  // for another process that writes
 
 constexpr const char* schema = R"(
 CREATE TABLE IF NOT EXISTS run(
@@ -45,7 +45,7 @@ std::string joined(const Changes& changes) {
 
 }  // namespace
 
-// A statement with its values; InputError through its database where a step fails.
+// A statement with bound values; errors are thrown as InputError of its database.
 class RunDatabase::Statement {
  public:
   Statement(const RunDatabase& database, const std::string& sql) : database_(database) {
@@ -66,12 +66,12 @@ class RunDatabase::Statement {
     sqlite3_bind_int64(handle_, place, value);
     return *this;
   }
-  // NaN is NULL.
+  // NaN becomes NULL.
   Statement& bind(int place, double value) {
     sqlite3_bind_double(handle_, place, value);
     return *this;
   }
-  // Whether there is a row.
+  // Returns whether there is a row.
   bool step() {
     const int result = sqlite3_step(handle_);
     if (result != SQLITE_ROW && result != SQLITE_DONE) database_.fail();
@@ -105,7 +105,7 @@ void RunDatabase::fail(const std::string& what) const {
 
 void RunDatabase::execute(const std::string& sql) const {
   if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) {
-    // A roll-back would lose the message.
+    // The error is thrown before the roll-back, which would discard the message.
     try {
       fail();
     } catch (...) {
@@ -127,7 +127,7 @@ RunDatabase::RunDatabase(const std::filesystem::path& path) : path_(path) {
   if (std::filesystem::is_symlink(path, none)) {
     throw InputError({path.string()}, "", "a link", "a file of designs, or no such file");
   }
-  // SQLite refuses links anywhere in a path; those to the folder are the user's own.
+  // SQLite rejects links anywhere in a path; links to the folder are resolved first.
   const std::filesystem::path place =
       std::filesystem::weakly_canonical(std::filesystem::absolute(path).parent_path(), none) /
       path.filename();
@@ -149,7 +149,7 @@ RunDatabase::~RunDatabase() {
   sqlite3_close(handle_);
 }
 
-// A file from elsewhere may have views in their place, or triggers, that never end.
+// Rejects views or triggers in the place of tables: in a foreign file they may never end.
 void RunDatabase::require_plain_tables() const {
   Statement others(*this,
                    "SELECT count(*) FROM sqlite_master WHERE type = 'trigger' OR "
@@ -158,19 +158,19 @@ void RunDatabase::require_plain_tables() const {
   if (others.step() && others.whole(0) > 0) fail("a database with other tables than a sweep's");
 }
 
-// Readers do not wait for writers (WAL), and committed runs survive a power cut (FULL).
+// WAL: readers do not wait for writers. FULL: committed runs survive a power failure.
 void RunDatabase::prepare_tables() {
   Statement tables(*this, "SELECT count(*) FROM sqlite_master");
   const bool is_new = tables.step() && tables.whole(0) == 0;
   tables.again();
   const int found = pragma("application_id");
-  // Another process may be about to write the head of the same new file.
+  // Another process may be writing the header of the same new file.
   if (found != application && !(is_new && found == 0)) fail("a database of another program");
   if (found == application && pragma("user_version") > format) {
     fail("a database of a newer version");
   }
   if (found == application) require_plain_tables();
-  // Two processes that open a new file at once: SQLite does not wait here.
+  // Repeated, because SQLite does not wait here if two processes open a new file at the same time.
   const auto begin = std::chrono::steady_clock::now();
   while (sqlite3_exec(handle_, "PRAGMA journal_mode = WAL", nullptr, nullptr, nullptr) !=
          SQLITE_OK) {
@@ -203,7 +203,7 @@ std::optional<RunOutcome> RunDatabase::find(const std::string& hash) const {
   return outcome;
 }
 
-// BEGIN IMMEDIATE, `work` and COMMIT; what fails is rolled back.
+// Executes BEGIN IMMEDIATE, `work` and COMMIT; rolls back on errors.
 void RunDatabase::in_transaction(const std::function<void()>& work) const {
   execute("BEGIN IMMEDIATE");
   try {
@@ -217,7 +217,7 @@ void RunDatabase::in_transaction(const std::function<void()>& work) const {
 
 void RunDatabase::keep(const RunRecord& record) {
   in_transaction([&] {
-    // One that failed has no figures to go with it.
+    // Remove a failed run, and replace it.
     Statement(*this, "DELETE FROM run WHERE hash = ? AND status <> 0").bind(1, record.hash).step();
     Statement run(*this,
                   "INSERT OR IGNORE INTO run(hash, command, program, changes, status, error, "

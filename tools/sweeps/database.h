@@ -1,8 +1,8 @@
 // The runs of a sweep in one SQLite file. The only place for SQLite.
 //
-// A run is one row of `run` with its rows of `figure`, written in one transaction: it is there
-// whole or not at all, whenever the process is killed. The view `figures` has names and values side
-// by side; `designs` is the table of the last sweep, for any tool that reads SQLite.
+// A run is one row of `run` with its rows of `figure`, written in one transaction: it is stored
+// completely or not at all, even if the process is killed. The view `figures` joins names and
+// values; `designs` is the table of the last sweep for other tools that read SQLite.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ struct sqlite3;
 namespace photorque {
 
 struct RunRecord {
-  std::string hash;     // of all that the run follows from: see RunIdentity
+  std::string hash;     // of all inputs of the run: see RunIdentity
   std::string command;  // "power"
   std::string program;  // version and git hash
   Changes changes;
@@ -27,11 +27,12 @@ struct RunRecord {
   double wall_s = 0.0;
 };
 
-// An open database. Any number of processes of one machine may have it open; each write waits for
-// those of others. InputError names the file: no database, not ours, damaged, disk full, no right.
+// An open database. Several processes of one machine may open it; a write waits for those of
+// others. Throws InputError with the name of the file: not a database, of another program, damaged,
+// disk full, no permission.
 class RunDatabase {
  public:
-  // Made where there is none.
+  // Creates the file if it is missing.
   explicit RunDatabase(const std::filesystem::path& path);
   ~RunDatabase();
   RunDatabase(const RunDatabase&) = delete;
@@ -39,11 +40,11 @@ class RunDatabase {
 
   // The run with this hash, if it exists.
   std::optional<RunOutcome> find(const std::string& hash) const;
-  // Keeps a run, in place of one that failed; one that succeeded stays.
+  // Stores a run. It replaces a failed run, but not a successful one.
   void keep(const RunRecord& record);
-  // The hashes of runs that failed.
+  // Hashes of failed runs.
   std::set<std::string> failed() const;
-  // Takes over every run of another database that is not here, or failed here only.
+  // Copies those runs of another database that are missing or failed here.
   void take_from(const std::filesystem::path& other);
   // Replaces the table `designs`.
   void write_designs(const Table& table);

@@ -40,7 +40,7 @@ std::vector<Figure> mean_of(const SweepPlan& plan, std::span<const RunOutcome> r
   return mean;
 }
 
-// Distance of a figure from its limits; negative outside.
+// Distance of a figure to its nearest limit; negative outside the limits.
 double margin(const Constraint& constraint, double value) {
   return std::min(value - constraint.at_least, constraint.at_most - value);
 }
@@ -52,7 +52,7 @@ bool satisfies_constraints(const SweepPlan& plan, const std::vector<Figure>& fig
   });
 }
 
-// The point where `goodness` of the figure is least.
+// Index of the point with the smallest `goodness` of the figure.
 template <typename Goodness>
 size_t worst_point(const std::vector<std::vector<Figure>>& points, const std::string& name,
                    const Goodness& goodness) {
@@ -102,7 +102,7 @@ std::string failed_run_label(const SweepPlan& plan, size_t run) {
   return where.empty() ? "" : " (" + where + ")";
 }
 
-// Larger is better in all of them; empty where the design does not count.
+// Values of the objectives, converted so that larger is better; empty if the design does not count.
 std::vector<double> merits(const SweepPlan& plan, const Design& design) {
   std::vector<double> all;
   if (!design.feasible) return all;

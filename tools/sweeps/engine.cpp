@@ -21,7 +21,7 @@ std::string shard_name(size_t number, size_t count) {
   return std::to_string(number) + "-of-" + std::to_string(count);
 }
 
-// An error of a run, reported for its plan: the values reach it as if by --set.
+// Removes "--set: " from the error of a run: the values of its plan are applied as if by --set.
 std::string without_origin(const std::string& text) {
   constexpr std::string_view by_set = "--set: ";
   return text.starts_with(by_set) ? text.substr(by_set.size()) : text;
@@ -59,7 +59,7 @@ RunEngine::RunEngine(Task task)
   failed_before_ = database().failed();
 }
 
-// A sweep that came to nothing leaves nothing.
+// A sweep without any successful run leaves no file.
 RunEngine::~RunEngine() {
   if (database_) return;
   std::error_code ignored;
@@ -80,7 +80,7 @@ RunDatabase& RunEngine::database() {
 std::optional<RunOutcome> RunEngine::stored(const std::string& hash) {
   const auto at = not_kept_yet_.find(hash);
   if (at != not_kept_yet_.end()) return at->second.outcome;
-  // Another process may have made the file meanwhile.
+  // Another process may have created the file meanwhile.
   if (!database_ && !fs::exists(task_.database)) return std::nullopt;
   if (!failed_before_.contains(hash)) return database().find(hash);
   std::optional<RunOutcome> found = database().find(hash);
@@ -111,7 +111,7 @@ void RunEngine::keep(RunRecord record) {
   database().keep(record);
 }
 
-// False when another process is at it.
+// Makes or reads one run. Returns false if another process is making it.
 bool RunEngine::settle(const Changes& changes, RunOutcome& outcome) {
   std::string hash;
   try {

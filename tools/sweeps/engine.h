@@ -1,4 +1,4 @@
-// The runs of a sweep: read from its database, or computed and stored there.
+// Runs of a sweep, read from its database or computed and stored there.
 #pragma once
 
 #include <filesystem>
@@ -45,17 +45,17 @@ class RunEngine {
   RunEngine(const RunEngine&) = delete;
   RunEngine& operator=(const RunEngine&) = delete;
 
-  // The outcomes of these runs, in order; makes those that are not kept, those that failed before
-  // again, and waits for those that another process is at. `made` may be empty.
+  // The outcomes of these runs, in order. Computes missing and previously failed runs, and waits
+  // for those that another process computes. `progress` may be empty.
   std::vector<RunOutcome> outcomes(std::span<const Changes> runs,
                                    const std::function<void(double)>& progress = {});
-  // The stored outcomes; empty for runs without one.
+  // The stored outcomes, in order; empty for runs that are not stored.
   std::vector<std::optional<RunOutcome>> kept_outcomes(std::span<const Changes> runs);
 
   size_t made() const { return made_; }
   size_t kept() const { return kept_; }
 
-  // The database, made if absent.
+  // The database; created if missing.
   RunDatabase& database();
   bool has_database() const { return database_ != nullptr; }
   Claims::Claim wait_for_others(const std::string& name) { return claims_->wait_for(name); }
@@ -72,9 +72,9 @@ class RunEngine {
   FigureNames names_;
   std::filesystem::path claims_path_;
   std::unique_ptr<Claims> claims_;
-  std::unique_ptr<RunDatabase> database_;          // null until there is something to keep
-  std::set<std::string> failed_before_;            // to be recomputed
-  std::map<std::string, RunRecord> not_kept_yet_;  // failures before the first success
+  std::unique_ptr<RunDatabase> database_;          // null until a run is stored
+  std::set<std::string> failed_before_;            // hashes of runs to be recomputed
+  std::map<std::string, RunRecord> not_kept_yet_;  // failed runs before the first success
   size_t made_ = 0, kept_ = 0;
 };
 

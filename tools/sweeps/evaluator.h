@@ -1,4 +1,4 @@
-// Computes the figures of a design from its runs and those of its built copies.
+// Computes the figures of a design from its runs and from those of its built copies.
 #pragma once
 
 #include <functional>
@@ -15,18 +15,19 @@ namespace photorque {
 
 class DesignEvaluator {
  public:
-  // `plan` and `engine` outlive it.
+  // `plan` and `engine` must outlive this object.
   DesignEvaluator(const SweepPlan& plan, RunEngine& engine);
 
-  // All runs that these designs need, including those of copies if every design has some.
+  // All runs that these designs need; with those of built copies if the plan requires copies of
+  // every design.
   std::vector<Changes> runs_of(std::span<const Changes> designs) const;
-  // The designs of such runs, which stand in the same order.
+  // The designs from the outcomes of runs_of(), in the same order.
   std::vector<Design> designs_of(std::span<const RunOutcome> outcomes) const;
 
-  // Both, with missing runs computed now.
+  // Combines runs_of() and designs_of(); computes missing runs.
   std::vector<Design> evaluate(std::span<const Changes> designs,
                                const std::function<void(double)>& progress = {});
-  // The copies of one design, objective by objective.
+  // Figures of the built copies of one design, one per objective.
   std::vector<BuiltFigure> build(const Changes& design,
                                  const std::function<void(double)>& progress = {});
 
@@ -37,7 +38,7 @@ class DesignEvaluator {
 
   const SweepPlan& plan_;
   RunEngine& engine_;
-  std::unique_ptr<Tolerances> tolerances_;  // null without any
+  std::unique_ptr<Tolerances> tolerances_;  // null if the plan has no tolerances
 };
 
 }  // namespace photorque

@@ -28,7 +28,8 @@ SettingsNode RunIdentity::changed(const Changes& changes) const {
   return root;
 }
 
-// A file that changes while a sweep runs counts as it was when it was first asked for.
+// Content hash of a file. It is cached, so that a file that changes during a sweep keeps its first
+// content.
 std::string RunIdentity::content_of_file(const fs::path& path) {
   std::error_code failure;
   const auto time = fs::last_write_time(path, failure).time_since_epoch().count();

@@ -1,4 +1,4 @@
-// The inputs of a run as one hash.
+// A hash of all inputs of a run.
 #pragma once
 
 #include <filesystem>
@@ -12,22 +12,22 @@
 
 namespace photorque {
 
-// The experiment of a sweep under the changes of its runs.
+// The experiment of a sweep with the changes of its runs.
 class RunIdentity {
  public:
   RunIdentity(RunOptions options, std::string command);
 
-  // The hash over program, command, every key under these changes but those of [sweep], and the
-  // content of every file that a text names: scene with its buffers and pictures, lamps, tables.
-  // Comments, order and the way numbers are written do not count. InputError for a change that
-  // makes no sense.
+  // Hash of the program, the command, every key with these changes (except [sweep]), and the
+  // content of every file that a text names: scene with buffers and pictures, lamps, tables.
+  // Comments, order and the notation of numbers have no influence. Throws InputError for an invalid
+  // change.
   std::string of(const Changes& changes);
 
-  // The value of a key under these changes. InputError where there is none.
+  // Value of a key with these changes. Throws InputError if there is none.
   SettingsNode value(const Changes& changes, const std::string& key) const;
 
-  // The experiment under these changes, without its plan, as a file for `folder`: files are named
-  // from there. `head` are comment lines at its beginning.
+  // Text of the experiment with these changes, without its plan, for a file in `folder`: file names
+  // are relative to it. `head` are comment lines at its beginning.
   std::string experiment(const Changes& changes, const std::vector<std::string>& head,
                          const std::filesystem::path& folder) const;
 
@@ -39,7 +39,7 @@ class RunIdentity {
   std::string command_, program_;
   SettingsNode root_;
   std::filesystem::path folder_;
-  std::map<std::string, std::string> files_;  // path, size and time of change: hash
+  std::map<std::string, std::string> files_;  // hash by path, size and time of change
 };
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-// The keys of [sweep].
+// Keys of [sweep].
 #pragma once
 
 #include "core/numerics/quadrature.h"

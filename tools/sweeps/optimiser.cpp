@@ -17,8 +17,8 @@ bool is_feasible(const PointValue& value) {
          std::ranges::all_of(value.margins, [](double m) { return m >= 0.0; });
 }
 
-// The box as the unit cube. It stores the last evaluation, because NLopt evaluates constraints at
-// the same point as the objective.
+// The search problem with the box scaled to the unit cube. It stores the last evaluation, because
+// NLopt evaluates constraints at the same point as the objective.
 class Problem {
  public:
   Problem(const SearchBox& box, size_t most_evaluations,

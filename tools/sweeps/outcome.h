@@ -13,7 +13,7 @@
 
 namespace photorque {
 
-// "KEY=VALUE" of every key that a run changes.
+// "KEY=VALUE" for every key that a run changes.
 using Changes = std::vector<std::string>;
 
 // The name of a figure; copies share it.
@@ -39,14 +39,14 @@ inline std::vector<Figure> figures_of(std::span<const Quantity> quantities) {
   return figures;
 }
 
-// The figure of this name; null where there is none.
+// Figure of this name; null if there is none.
 inline const Figure* find_figure(std::span<const Figure> figures, const std::string& name) {
   const auto at = std::ranges::find(
       figures, name, [](const Figure& f) -> const std::string& { return f.name.text(); });
   return at == figures.end() ? nullptr : &*at;
 }
 
-// The names that the runs of a sweep have in common: kept once, not once for each run.
+// Names that the runs of a sweep have in common, stored once for all runs.
 class FigureNames {
  public:
   void share(std::vector<Figure>& figures) {
@@ -58,8 +58,8 @@ class FigureNames {
 };
 
 struct RunOutcome {
-  std::vector<Figure> figures;  // of its summary; none when it failed
-  int status = 0;               // as the program's exit status: 2 wrong input, 3 numerical
+  std::vector<Figure> figures;  // of the summary; empty if the run failed
+  int status = 0;               // exit status of the program: 2 wrong input, 3 numerical failure
   std::string error = {};       // one line
   bool failed() const { return status != 0; }
 };

@@ -14,7 +14,7 @@ double value_or_nothing(const Design& design, const std::string& column) {
   return value ? value->value : std::nan("");
 }
 
-// The numbers of an axis' values; empty where one is none.
+// Values of an axis as numbers; empty if one of them is not a number.
 std::vector<double> axis_numbers(const SweepAxis& axis) {
   std::vector<double> all;
   for (const std::string& text : axis.values) {
@@ -36,7 +36,7 @@ bool is_even(const std::vector<double>& values) {
   return step > 0.0;
 }
 
-// Whether a figure is one of the objectives, and which way.
+// The objective that uses a figure; null if there is none.
 const Objective* objective_of(const SweepPlan& plan, const std::string& column) {
   const auto at = std::ranges::find_if(plan.objectives, [&](const Objective& o) {
     return o.figure.column() == column || plan.judged_column(o) == column;
@@ -44,7 +44,7 @@ const Objective* objective_of(const SweepPlan& plan, const std::string& column) 
   return at == plan.objectives.end() ? nullptr : &*at;
 }
 
-// Over two axes of a grid: where there are more, the best that the others allow.
+// Map over two axes of a grid. With more axes, each point is the best design over the others.
 Map pair_map(const SweepPlan& plan, const SweepResult& result, const std::string& column, size_t i,
              size_t j) {
   const std::vector<double> x = axis_numbers(plan.axes[i]), y = axis_numbers(plan.axes[j]);
@@ -90,7 +90,7 @@ Map pair_map(const SweepPlan& plan, const SweepResult& result, const std::string
   return map;
 }
 
-// Against the last axis, a curve for every combination of the others.
+// Curves over the last axis, one for every combination of the others.
 Plot curves_over_last(const SweepPlan& plan, const SweepResult& result, const std::string& column) {
   const AxisLabel x = label_of(plan.axes.back()), y = label_of_figure(column);
   Plot plot{"sweep_" + column, title_of_figure(plan, column) + " over " + x.name, x.text(),
@@ -113,7 +113,7 @@ Plot curves_over_last(const SweepPlan& plan, const SweepResult& result, const st
   return plot;
 }
 
-// A curve of points; empty ones are left out.
+// Adds a curve of points; omits it if it is empty.
 void add_points(Plot& plot, const std::string& label, std::vector<double> x, std::vector<double> y,
                 Plot::Colour colour, bool dots) {
   if (x.empty()) return;
@@ -137,7 +137,7 @@ struct Cloud {
   }
 };
 
-// The value of every design, its constraints kept or not, and the best.
+// Adds the values of all designs, separated by whether the constraints are satisfied, and the best.
 void add_designs(Plot& plot, const SweepPlan& plan, const SweepResult& result,
                  const std::vector<double>& x, const std::vector<double>& y) {
   Cloud inside, outside, best;
@@ -195,7 +195,7 @@ Plot pareto_plot(const SweepPlan& plan, const SweepResult& result, size_t second
   return plot;
 }
 
-// The fraction of the copies that is at least so good.
+// Fraction of the copies that are at least as good, over the value.
 Plot::Curve reached_curve(const std::string& label, const BuiltFigure& figure, bool maximise,
                           Plot::Colour colour) {
   std::vector<double> values;

@@ -23,7 +23,7 @@ SweepFigure read_figure(const Settings& table, std::string_view key, const std::
   return figure;
 }
 
-// One text or several.
+// A text or an array of texts.
 std::vector<std::string> texts_or_text(const Settings& table, std::string_view key) {
   if (!table.has(key)) return {};
   if (table.raw(key).is_array()) return table.texts(key);
@@ -52,7 +52,7 @@ std::vector<Constraint> read_constraints(const Settings& sweep) {
   std::vector<Constraint> all;
   for (const Settings& table : sweep.get(sweep_key::constraint)) {
     Constraint one{read_figure(table, constraint_key::figure, table.get(constraint_key::figure))};
-    // The limits are not converted: the unit of a figure is in its name.
+    // The limits are not converted, because the unit of a figure is in its name.
     if (!table.has(constraint_key::at_least) && !table.has(constraint_key::at_most)) {
       throw table.error(constraint_key::at_least, "neither at_least nor at_most",
                         "one of them, or both");
@@ -85,7 +85,7 @@ SweepAxis read_axis(const Settings& table, const SweepPlan& plan, uint64_t seed,
   return axis;
 }
 
-// A quantity is the same in another unit.
+// Identifier of a key's quantity, independent of its unit.
 std::string quantity_of(const std::string& key) {
   const size_t dot = key.rfind('.');
   const size_t name = dot == std::string::npos ? 0 : dot + 1;

@@ -96,26 +96,25 @@ struct SweepPlan {
   BuiltCopies built;
   SearchPlan search;
 
-  // The number of designs; 0 if an axis is a range without steps, which only an optimisation can
-  // use.
+  // Number of designs; 0 if an axis is a range without steps, which only an optimisation can use.
   size_t designs() const;
-  // The value of an axis in a design, and its place among the axis' values. In a grid the last axis
+  // Value of an axis in a design, and its index among the axis' values. In a grid the last axis
   // varies fastest.
   const std::string& value(size_t design, size_t axis) const;
   size_t place(size_t design, size_t axis) const;
-  // The changes "KEY=VALUE" of a design, one per axis.
+  // Changes "KEY=VALUE" of a design, one per axis.
   Changes overrides(size_t design) const;
 
   // Number of combinations of the values of mean_over, and of worst_over.
   size_t mean_points() const;
   size_t worst_points() const;
-  // The changes of each run of one design. The values of mean_over vary fastest.
+  // Changes of each run of one design. The values of mean_over vary fastest.
   std::vector<Changes> runs_of(const Changes& design) const;
-  // The weight of each point of mean_over in the mean.
+  // Weight of each point of mean_over in the mean.
   std::vector<double> mean_weights() const;
 
-  // The column by which designs are ranked: that of the figure, or that of the value which the
-  // stated fraction of the built copies reaches, "p95_array_power_W".
+  // Column by which designs are ranked: that of the figure, or "p95_array_power_W" for the value
+  // that the stated fraction of the built copies reaches.
   std::string judged_column(const Objective& objective) const;
   std::string built_column(const SweepFigure& figure) const;
 };
@@ -124,7 +123,7 @@ struct SweepPlan {
 // the key of their axis.
 SweepPlan read_sweep_plan(const Settings& sweep);
 
-// The keys that a plan lacks for an optimisation; empty if it lacks none.
+// Keys that a plan lacks for an optimisation; empty if it is complete.
 std::string missing_search_keys(const SweepPlan& plan);
 
 }  // namespace photorque

@@ -18,11 +18,11 @@ namespace {
 using Eigen::ArrayXd, Eigen::MatrixXd;
 
 constexpr const char* error_suffix = "_standard_error";
-// Figure of `power`: the temperature of the cells.
+// Figure of `power`: temperature of the cells.
 constexpr const char* cell_temperature = "cell_temperature_K";
 constexpr const char* above_rated = "cell_temperature_above_rated_K";
 
-// The value of an axis as a column: numbers where all are numbers.
+// Adds the values of an axis as a column: numbers if all of them are numbers, otherwise texts.
 void add_axis(Table& table, const SweepPlan& plan, size_t axis) {
   std::vector<double> numbers;
   std::vector<std::string> texts;
@@ -59,8 +59,8 @@ const std::vector<Figure>& first_figures(const SweepResult& result) {
   return first->figures;
 }
 
-// The value with the digits of its error, or with the usual digits if the relative error is below
-// 1e-6.
+// The value with the digits given by its error, or with the default digits if the relative error is
+// below 1e-6.
 std::string shown(Estimate value) {
   constexpr double finest = 1e-6;
   if (value.standard_error < finest * std::abs(value.value)) return show(value.value);
@@ -102,8 +102,8 @@ ArrayXd centred(const std::vector<double>& values) {
   return all - all.mean();
 }
 
-// The fractions of the variance of `values` that come from each of the `inputs`, by the straight
-// lines that fit best together. All lists are centred; zero where the values do not vary.
+// Fractions of the variance of `values` due to each of the `inputs`, by linear regression on all of
+// them. All lists must be centred. Zero if the values do not vary.
 ArrayXd fractions_of_variance(const ArrayXd& values, const MatrixXd& inputs) {
   const double variance = values.square().sum();
   if (!(variance > 0.0)) return ArrayXd::Zero(inputs.cols());

@@ -1,4 +1,4 @@
-// The table, the figures and the plots of a sweep.
+// Table, figures and plots of a sweep.
 #pragma once
 
 #include <optional>
@@ -12,20 +12,19 @@
 
 namespace photorque {
 
-// The columns of figures: those named, else all, then those of objectives and constraints.
-// InputError for one that a design's figures do not have, with the nearest that they do.
+// Columns of figures: those named in the plan (by default all), then those of objectives and
+// constraints. Throws InputError for a missing figure, with the most similar existing name.
 std::vector<std::string> figure_columns(const SweepPlan& plan, const std::vector<Figure>& figures);
 
-// "sweep": a row per design: its number, the axes, every figure with its standard error, then,
-// where asked for, `feasible` and `pareto` (1 or 0), and `error` where a design failed.
+// Table "sweep", one row per design: its number, the axes, every figure with its standard error;
+// then, if applicable, `feasible` and `pareto` (1 or 0) and `error` for failed designs.
 Table sweep_table(const SweepPlan& plan, const SweepResult& result);
 
-// Spread of the figures of a random plan without an objective.
-// "spread": a row per figure of `columns` with its mean, its standard deviation over the designs
-// that did not fail, and for every axis of numbers "from KEY", the fraction of the variance that it
-// causes: b² var(x)/var(y), b of the linear regression on all of them. The fractions sum to one
-// where the figure is linear in independent inputs. Nothing for a grid, a plan with an objective,
-// or fewer designs than the regression needs.
+// Table "spread" of a random plan without an objective, one row per figure of `columns`. It
+// contains the mean, the standard deviation over the designs that did not fail, and for every
+// numeric axis "from KEY", its fraction of the variance: b² var(x)/var(y) with b from linear
+// regression on all axes. The fractions sum to one if the figure is linear in independent inputs.
+// Empty for a grid, a plan with an objective, or fewer designs than the regression needs.
 std::optional<Table> spread_table(const SweepPlan& plan, const SweepResult& result,
                                   const std::vector<std::string>& columns);
 
@@ -42,14 +41,14 @@ void add_pictures(Product& product, const SweepPlan& plan, const SweepResult& re
 // Progress of a search: every evaluation and the best so far.
 Plot search_plot(const SweepPlan& plan, const SweepResult& result);
 
-// The table, pictures, and the best as headline figures.
+// Table, pictures, and the best design as main figures.
 Product sweep_product(const SweepPlan& plan, const SweepResult& result);
 
-// The best design against the nominal one, printed.
+// Prints the best design compared with the nominal one.
 void print_best(const Console& console, const SweepPlan& plan, const SweepResult& result,
                 const Changes& changes);
 
-// Problems of a sweep: failed designs, none that keeps to the constraints.
+// Problems of a sweep: failed designs, or no design that satisfies the constraints.
 std::vector<std::string> sweep_warnings(const SweepPlan& plan, const SweepResult& result);
 
 }  // namespace photorque

@@ -14,7 +14,7 @@ double number_of_node(const SettingsNode& node) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-// A number or an array of numbers; empty for anything else.
+// A number or an array of numbers; empty for other values.
 std::vector<double> numbers_of_node(const SettingsNode& node) {
   std::vector<double> all;
   if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
@@ -70,7 +70,7 @@ Changes Tolerances::built(const Changes& design, size_t copy) const {
 }
 
 std::optional<Estimate> reached_by(double fraction, bool maximise, std::vector<double> values) {
-  // Sorted from the worst value; larger is better.
+  // Sort from the worst value, with larger values better.
   for (double& v : values) {
     if (!maximise) v = -v;
     if (std::isnan(v)) v = -std::numeric_limits<double>::infinity();

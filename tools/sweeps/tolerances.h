@@ -1,4 +1,4 @@
-// Designs as they would be built: drawn within their tolerances, the same draws for every design.
+// Built copies of designs: random deviations within the tolerances, equal for every design.
 #pragma once
 
 #include <vector>
@@ -11,26 +11,26 @@ namespace photorque {
 
 class Tolerances {
  public:
-  // InputError for a key without a number, or numbers, to start from.
+  // Throws InputError for a key without numbers.
   Tolerances(const BuiltCopies& plan, const RunIdentity& identity);
 
-  // The changes that make copy `copy` (from 0) of a design. Every number of an array has a separate
+  // Changes that define copy `copy` (from 0) of a design. Every number of an array has a separate
   // random error.
   Changes built(const Changes& design, size_t copy) const;
 
  private:
   struct Drawn {
     Tolerance tolerance;
-    std::vector<std::vector<double>> off;  // of each component, of each copy: in widths
+    std::vector<std::vector<double>> off;  // [component][copy]: deviation in units of the width
   };
   std::vector<Drawn> drawn_;
   const RunIdentity& identity_;
 };
 
-// The value that a fraction of the copies reaches: `fraction` of the values are at least so good.
-// The standard error is half the distance of the values √(n f (1 − f)) places up and down the
-// order, that of independent draws (Sobol points do better). Nothing where so many copies failed
-// (NaN, which is worse than any value).
+// The value that a fraction of the copies reaches: `fraction` of the values are at least as good.
+// The standard error is half the difference between the values √(n f (1 − f)) places higher and
+// lower in the order, which is valid for independent draws (Sobol points have a smaller error).
+// Empty if too many copies failed (NaN, which counts as worst).
 std::optional<Estimate> reached_by(double fraction, bool maximise, std::vector<double> values);
 
 }  // namespace photorque

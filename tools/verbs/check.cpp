@@ -1,4 +1,4 @@
-// photorque check: everything about an experiment that can be known without running it.
+// photorque check: all checks of an experiment that need no run.
 #include "tools/verbs/check.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ std::string counted(size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-// The table of a mistake, "source[0]" of "lab.toml:18: source[0].power_W: found …".
+// Table of a mistake: "source[0]" from "lab.toml:18: source[0].power_W: found …".
 std::string table_of(const InputError& mistake) {
   std::string line = mistake.what();
   const size_t end = std::min(line.find(": found "), line.find(": expected "));
@@ -46,7 +46,7 @@ std::string table_of(const InputError& mistake) {
   return line.substr(0, line.find('.'));
 }
 
-// The mistakes, table by table, the first of each.
+// Collects the mistakes, table by table; of each table the first.
 class Checker {
  public:
   enum class Of { file, design_of_sweep };
@@ -74,7 +74,7 @@ class Checker {
   }
 
  private:
-  // The file with its overrides, as it stands.
+  // The tree of the file with its overrides.
   SettingsNode written() const {
     SettingsNode root = parse_toml(options_.experiment_text(), options_.experiment.string());
     for (const std::string& change : options_.all_overrides()) apply_override(root, change);
@@ -89,7 +89,7 @@ class Checker {
 
   void read_tables() {
     const bool fits = file_->settings.has("fit");
-    // A scene without lamps beside a platform is for the camera alone.
+    // A scene without lamps together with a platform is used only by the camera.
     const bool unlit = file_->sources.empty() && file_->settings.has("platform");
     const bool is_module = file_->settings.has("module");
     if (file_->scene_file && !unlit) check_light();
@@ -103,7 +103,7 @@ class Checker {
     }
   }
 
-  // Whether it went well; else its one line, once.
+  // Runs `work`. Returns whether it succeeded; otherwise adds its error once.
   bool attempt(const std::function<void()>& work) {
     try {
       work();
@@ -119,7 +119,7 @@ class Checker {
     const std::string line = mistake.what();
     const bool known = std::ranges::any_of(
         report_.mistakes, [&](const InputError& other) { return other.what() == line; });
-    // A consequence of a misspelt key is no second mistake.
+    // An error that follows from a misspelt key is not reported separately.
     const bool follows = std::ranges::find(misread_, table_of(mistake)) != misread_.end();
     if (!known && !follows) report_.mistakes.push_back(mistake);
   }
@@ -139,7 +139,8 @@ class Checker {
     check_recordings_of_light(*run);
   }
 
-  // An experiment that states instruments of light, or missing effects, is meant for them.
+  // Whether an experiment is meant for recordings of light: it states instruments of light, or
+  // missing effects.
   void check_recordings_of_light(const OpticalRun& run) {
     const auto are_of_light = [](const Settings& sensors) {
       return sensors.has("irradiance") || sensors.has("array");
@@ -183,7 +184,7 @@ class Checker {
   void check_array(OpticalRun& run) {
     const ArrayPower array = read_array_power(run);
     for (const std::string& notice : array.notices) report_.notes.push_back(notice);
-    // Dark, but the cells must lie on the map.
+    // Evaluate the array without light, to check that the cells lie on the map.
     const FluxMapReceiver& map = run.flux_map(array.flux_map);
     const BinSums dark{map.bins(), 2, std::vector<double>(2 * map.bins(), 0.0)};
     BinSums dark_angles;
@@ -312,7 +313,7 @@ class Checker {
     }
     return true;
   }
-  // Keys of a design are changed as by --set.
+  // Keys of a design are changed as by --set; such errors are reported as errors of the sweep.
   InputError of_sweep(const InputError& mistake) const {
     const std::string what = mistake.what(), set = "--set: ";
     if (!what.starts_with(set) || !options_.overrides.empty()) return mistake;
@@ -323,7 +324,7 @@ class Checker {
   bool by_declaration_;
   Of of_;
   std::vector<Key> tables_ = experiment_keys();
-  std::vector<std::string> misread_;  // tables with keys that are wrong
+  std::vector<std::string> misread_;  // tables with wrong keys
   std::optional<ExperimentFile> file_;
   CheckReport report_;
 };
@@ -356,7 +357,7 @@ void print_commands(const Console& console, const CheckReport& report,
   }
 }
 
-// The tables that each command needs, where the file has none of them.
+// Prints the required tables of each command for which the file has none.
 void print_lacking(const Console& console, const CheckReport& report,
                    const std::vector<Verb>& verbs) {
   std::vector<std::string> printed_needs;
@@ -372,7 +373,7 @@ void print_lacking(const Console& console, const CheckReport& report,
       runs = runs || std::ranges::find(report.commands, other.name, &CheckReport::Command::name) !=
                          report.commands.end();
     }
-    // Beside a sweep no search, and the other way round: both read [sweep].
+    // Not printed for `optimise` if `sweep` can run, and vice versa: both read [sweep].
     if (!runs) console.line("not " + names + ": without " + verb.needs);
   }
 }

@@ -1,4 +1,4 @@
-// Properties of an experiment that can be checked without running it.
+// Checks of an experiment that need no run.
 #pragma once
 
 #include <string>
@@ -12,24 +12,25 @@ namespace photorque {
 struct CheckReport {
   struct Command {
     std::string name;
-    std::string what;  // effect of the command, in a sentence
+    std::string what;  // effect of the command, as a sentence
   };
   std::vector<Command> commands;
-  std::vector<Command> impossible;  // commands with tables in the file, and why they cannot run
-  std::vector<std::string> tables;  // that the file has, in the order of the documents
-  // Every key that is unknown, of the wrong type or out of range; beside them, of tables without
-  // such, the first that a run would end with.
+  // Commands with tables in the file that cannot run, and the reason.
+  std::vector<Command> impossible;
+  std::vector<std::string> tables;  // tables of the file, in the order of the documents
+  // Every key that is unknown, of the wrong type or out of range. For tables without such keys, the
+  // first error with which a run would end.
   std::vector<InputError> mistakes;
   std::vector<std::string> notes;  // assumptions of the readers
 };
 
 enum class KeyCheck {
   by_declaration,  // tools/keys first, then the readers
-  by_readers,      // the readers alone: for the test that holds them against the declarations
+  by_readers,      // only the readers, for the test that compares them with the declarations
 };
 
-// Reads the experiment as every command would: all files that it names, every table, the geometry;
-// and sends a few rays, to find lamps inside of solids and maps without light.
+// Reads the experiment as every command would: all named files, every table, the geometry. Sends a
+// few rays to find lamps inside solids and maps without light.
 CheckReport run_check(const RunOptions& options, KeyCheck keys = KeyCheck::by_declaration);
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-// photorque fit-cell: the parameters of a solar cell, module or shaded string from measurements.
+// photorque fit-cell: parameters of a solar cell, module or shaded string from measurements.
 #include "tools/verbs/fit_cell.h"
 #include "core/settings/files.h"
 
@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The curves of a file, cleaned; the notes state the omitted points.
+// Adds the cleaned curves of a file; notes state the omitted points.
 void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
                 std::optional<double> temperature_K, FitTask& task) {
   std::vector<MeasuredCurve> curves = curves_in(whole_text(file), file.string());
@@ -67,7 +67,7 @@ void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
   }
 }
 
-// Repeats have one light and one temperature.
+// Whether the curves are repeats, with equal light and temperature.
 bool are_repeats(const std::vector<CurveAt>& curves) {
   const auto [cold, warm] = std::ranges::minmax(curves, {}, &CurveAt::temperature_K);
   const auto [dim, bright] = std::ranges::minmax(curves, {}, &CurveAt::irradiance_W_m2);
@@ -110,7 +110,8 @@ void read_curves(const Settings& s, const fs::path& folder, FitTask& task) {
   if (are_repeats(task.conditions)) task.conditions.clear();
 }
 
-// The open-circuit voltage of one cell: 0.3 V in moonlight, 4.5 V of the best stacks of junctions.
+// Checks the open-circuit voltage per cell: between 0.3 V (moonlight) and 4.5 V (best
+// multi-junction cells).
 void check_cells(const Settings& s, const FitTask& task) {
   if (task.substrings > 0 && task.cells_in_series == 1) return;  // not stated
   double open_V = 0.0;
@@ -129,8 +130,8 @@ void check_cells(const Settings& s, const FitTask& task) {
                 "cells that give 0.1 to 5 V each of these " + readable_number(open_V, 3) + " V");
 }
 
-// Reads the curves too, relative to `folder`. InputError for missing or contradictory keys,
-// and for cells in series that no cell's voltage goes with.
+// Reads [fit] and its curves, relative to `folder`. Throws InputError for missing or contradictory
+// keys, and for a number of cells in series that contradicts the voltage.
 FitTask read_fit_task(const Settings& root, const fs::path& folder) {
   const Settings s = root.get(fit_key::fit);
   FitTask task;
@@ -197,8 +198,8 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
   return task;
 }
 
-// Ideality below that of any junction: 0.5 is sharper than its thermal voltage
-// allows, 4 is a leak.
+// Checks the ideality: below 0.5 the curve is sharper than the thermal voltage of a junction
+// allows; above 4 it is a leak.
 void check_ideality(const SingleDiode& d, const FitTask& task) {
   const double ideality = d.scale_V.value / task.thermal_V();
   constexpr double lowest = 0.5, highest = 4.0;
@@ -216,7 +217,7 @@ void print_ideality_note(const Console& console, const SingleDiode& d, const Fit
                std::to_string(task.cells_in_series) + ") and the temperature right?");
 }
 
-// A diode that is off by a good part of the current describes nothing.
+// Rejects a fit with deviations of more than a tenth of the current.
 void check_rms(double rms_A, const FitTask& task) {
   double largest_A = 0.0;
   for (const IvSweep& sweep : task.sweeps) {
@@ -230,8 +231,8 @@ void check_rms(double rms_A, const FitTask& task) {
                    "substrings = N");
 }
 
-// The errors rest on the scatter, so they are as wide as the misfit is; but parameters of a model
-// that does not describe the data are off by more than chance.
+// Warns about a large misfit. Errors are scaled with the scatter, but parameters of an unsuitable
+// model are off by more than these errors.
 void print_misfit(const Console& console, double scatter) {
   constexpr double usual = 3.0;
   if (scatter < usual) return;
@@ -279,7 +280,7 @@ void print_light_note(const Console& console, bool uses_light, bool is_one) {
       (is_one ? "its mean" : "the mean of each curve"));
 }
 
-// The difference between the directions of the voltage.
+// Prints the hysteresis: the difference between rising and falling voltage.
 void print_storage(const Console& console, const ChargeStorage& storage,
                    std::vector<CellRow>& rows) {
   const std::string unit = storage.is_timed ? "s" : "readings";
@@ -318,7 +319,7 @@ Product fit_even_light(const FitTask& task, const Console& console) {
   return product;
 }
 
-// The shunt in words, and `more`.
+// Prints the law of the shunt, followed by `more`.
 void print_shunt_law(const Console& console, ShuntLaw law, const std::string& more) {
   console.line(std::string("  shunt: ") +
                (law == ShuntLaw::constant  ? "constant"
@@ -406,7 +407,7 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
   FitTask at_first = task;
   at_first.temperature_K = task.datasheet[0].temperature_K;
   check_ideality(fit.diode, at_first);
-  // The search for the gap ends there for any slope.
+  // The search for the gap ends at these limits for any slope.
   constexpr double lowest_eV = 0.3, highest_eV = 4.0;
   if (!(fit.model.gap_eV > lowest_eV && fit.model.gap_eV < highest_eV)) {
     throw InputError({}, "fit.open_circuit_slope_per_K",
@@ -475,7 +476,7 @@ Product fit_uneven_light(const FitTask& task, const Console& console) {
   return product;
 }
 
-// The cell of a module in a library, as keys, and its listed and computed ratings.
+// Lists the cell of a library module as keys, with its listed and computed ratings.
 Product list_module(const ListedModule& module, const Console& console) {
   const CellParameters& p = module.cell.reference;
   const RatedPoint& rated = module.rated;

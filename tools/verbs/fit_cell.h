@@ -1,4 +1,4 @@
-// The parameters of a solar cell, module or shaded string from measurements.
+// Parameters of a solar cell, module or shaded string from measurements.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace photorque {
 // Fits the cell of [fit].
 RunResult run_fit_cell(const RunOptions& options, const Console& console);
 
-// Reads all input without fitting, and describes the fit.
+// Reads all input without fitting. Returns a description of the fit.
 std::string describe_fit(const RunOptions& options);
 
 }  // namespace photorque

@@ -12,7 +12,7 @@ namespace {
 
 using Is = CellRow::Is;
 
-// A number that is positive by its nature, and known to better than itself.
+// Whether the standard error of a positive number is smaller than the number.
 bool is_determined(const CellRow& row) {
   return row.is != Is::value || row.estimate.standard_error < row.estimate.value ||
          row.estimate.standard_error == 0.0;
@@ -22,7 +22,7 @@ std::string words_of(const CellRow& row) {
   const std::string value = show(row.estimate.value);
   if (row.is == Is::lower_limit) return "above " + value + " (95 %): no leak shows";
   if (row.is == Is::upper_limit) return "below " + value + " (95 %)";
-  // An error of ten times the number is none.
+  // An error of ten times the number means that it is not determined.
   constexpr double hopeless = 10.0;
   if (!(row.estimate.standard_error < hopeless * std::abs(row.estimate.value)) &&
       !is_determined(row)) {
@@ -76,7 +76,7 @@ Product parameter_product(const std::vector<CellRow>& rows) {
 void print_rows(const Console& console, const std::vector<CellRow>& rows) {
   console.heading("Fitted parameters (± standard error)");
   for (const CellRow& row : rows) {
-    // A limit is printed beside the name of its parameter.
+    // A limit is printed with the name of its parameter.
     std::string name = row.name;
     if (row.is != Is::value) name = name.substr(0, name.find('_')) + "_ohm";
     console.line("  " + padded(name, 26) + words_of(row));
@@ -134,7 +134,7 @@ void print_cell(const Console& console, const SingleDiode& d, const FitTask& tas
   }
 }
 
-// Residual of each measured point from the fitted curve, between the curve's own points straight.
+// Residual of each measured point from the fitted curve, which is interpolated linearly.
 Plot::Curve residuals_of(const Plot::Curve& measured, const Plot::Curve& fitted) {
   Plot::Curve left{"", measured.x, {}, {}, true};
   for (size_t i = 0; i < measured.x.size(); ++i) {

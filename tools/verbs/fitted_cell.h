@@ -1,4 +1,4 @@
-// Input of `fit-cell`; the fitted cell as text, table and picture.
+// Input of `fit-cell`; the fitted cell as text, table and plot.
 #pragma once
 
 #include <filesystem>
@@ -19,10 +19,10 @@ namespace photorque {
 struct FitTask {
   std::vector<std::filesystem::path> files;
   std::vector<IvSweep> sweeps;
-  // Curves with light and temperature, where they are not repeats.
+  // Curves at different light or temperature, which are not repeats.
   std::vector<CurveAt> conditions;
   std::vector<std::string> names;  // of the sweeps
-  std::vector<std::string> notes;  // parts that were left out
+  std::vector<std::string> notes;  // omitted parts of the input
   std::optional<ShuntLaw> shunt_law;
   std::vector<RatedPoint> datasheet;
   std::optional<ListedModule> module;
@@ -30,16 +30,16 @@ struct FitTask {
   RatedTolerance tolerance;
   SweepNoise noise;
   int cells_in_series = 1;
-  int substrings = 0;  // 0: even light
+  int substrings = 0;  // 0: uniform light
   double temperature_K = 298.15;
-  bool is_density = false;  // the currents are those of 1 cm²
+  bool is_density = false;  // the currents are per cm²
 
-  // n V_t of the whole device over the ideality of one of its cells, at that temperature.
+  // n V_t of the whole device divided by the ideality of one cell, at that temperature [V].
   double thermal_V() const;
 };
 
-// A figure of a fit. A limit (95 %, one-sided) replaces a number that the data do not determine;
-// its name states it: "shunt_above_ohm".
+// A figure of a fit. If the data do not determine a number, it is replaced by a limit (95 %,
+// one-sided), whose name states this: "shunt_above_ohm".
 struct CellRow {
   enum class Is { value, lower_limit, upper_limit };
   std::string name;
@@ -47,23 +47,24 @@ struct CellRow {
   Is is = Is::value;
 };
 
+// Parameters of a fitted diode as figures.
 std::vector<CellRow> diode_rows(const SingleDiode& diode, const FitTask& task);
 
-// The figures, and the table `parameters`.
+// The figures, with the table `parameters`.
 Product parameter_product(const std::vector<CellRow>& rows);
 void print_rows(const Console& console, const std::vector<CellRow>& rows);
-// Parameters that are positive by their nature and come out with an error as large as themselves.
+// Prints the positive parameters whose error is as large as their value.
 void print_undetermined(const Console& console, const std::vector<CellRow>& rows);
-// Each bound on which the fit ended: key, bound, meaning.
+// Prints each bound on which the fit ended: key, bound, meaning.
 void print_bounds(const Console& console, const std::vector<BoundReached>& bounds);
 void print_key(const Console& console, const char* name, double value,
                const std::string& comment = "");
-// The keys of an experiment's [array.cell_parameters] for one of the cells.
-// `reference`: the shunt's change with the light.
+// Prints the keys of an experiment's [array.cell_parameters] for one of the cells. `reference`
+// states the change of the shunt with the light.
 void print_cell(const Console& console, const SingleDiode& diode, const FitTask& task,
                 const CellParameters& reference = {});
 
-// Measured points and a fitted curve, as current and as power.
+// Adds measured points and a fitted curve, as current and as power.
 void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
                   const std::vector<ArrayPoint>& maxima, Product& product);
 

@@ -1,4 +1,4 @@
-// photorque new: a first experiment, commented, for a model of one's own or for a platform alone.
+// photorque new: a first experiment with comments, for a user's model or for a platform alone.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -74,7 +74,7 @@ std::string number(double value) {
   return printed("%.3g", value);
 }
 
-// Around all parts of that name, or around the whole scene.
+// Bounding box of all parts of that name, or of the whole scene.
 Eigen::AlignedBox3d box_of(const Scene& scene, const std::optional<std::string>& path = {}) {
   Eigen::AlignedBox3d box;
   for (const Instance& instance : scene.instances) {
@@ -95,14 +95,14 @@ double upward_area_m2(const Scene& scene, uint32_t instance) {
   return area;
 }
 
-// The middle, seen from above, of all parts of that name.
+// Centre of the bounding box of all parts of that name.
 Vec3 middle_m(const Scene& scene, const std::string& path) {
   const Eigen::AlignedBox3d box = box_of(scene, path);
   return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.center());
 }
 
-// The part that most likely receives the light from above: by its name, else the one with the
-// largest surface seen from above.
+// The part that most likely receives light from above, judged by its name, otherwise the part with
+// the largest area seen from above.
 std::string lit_node(const Scene& scene) {
   std::string best;
   double best_score = -1.0;
@@ -131,7 +131,7 @@ std::string listed(const std::string& what, const std::set<std::string>& names) 
   return text;
 }
 
-// Settings of a model that are needed to read it: of STL and OBJ its unit, by --set.
+// Settings needed to read a model: for STL and OBJ the unit and axis, from --set.
 struct SceneWords {
   std::optional<CadConventions> cad;
   std::string unit, up;
@@ -163,7 +163,7 @@ SceneWords scene_words(const Options& options) {
   return words;
 }
 
-// Where a value took the place of another, it stands on that line.
+// Assigns the line of the old value to the value that replaces it.
 void keep_lines(const SettingsNode& before, SettingsNode& now) {
   if (now.where.line <= 0) now.where = before.where;
   const auto* old_table = std::get_if<SettingsNode::Table>(&before.value);
@@ -180,7 +180,7 @@ void keep_lines(const SettingsNode& before, SettingsNode& now) {
   }
 }
 
-// The experiment with --set applied, its comments kept.
+// The experiment with --set applied; its comments are kept.
 std::string with_overrides(const std::string& text, const Options& options) {
   if (options.overrides.empty()) return text;
   TomlDocument document(text, options.experiment.string());
@@ -191,7 +191,7 @@ std::string with_overrides(const std::string& text, const Options& options) {
   return document.text();
 }
 
-// A wrong unit shows in the size of the model.
+// Size of the model as text: it reveals a wrong unit.
 std::string size_text(const Scene& scene, const fs::path& file, const SceneWords& words) {
   const Eigen::AlignedBox3d box = box_of(scene);
   if (box.isEmpty()) return "";
@@ -237,7 +237,7 @@ std::string light_text(const GltfModel& model, const std::string& file, const Sc
                height_m = std::max(0.0, box_of(scene).max().z()) + 2.0 * radius_m;
   const std::string lit = lit_node(scene);
   const Vec3 above_m = middle_m(scene, lit);
-  // No digits of a middle that is the model's own but for rounding.
+  // Removes the rounding residue of a coordinate that is zero in the model.
   const auto small = [&](double x_m) { return std::abs(x_m) < 1e-4 * radius_m ? 0.0 : x_m; };
   return "[scene]\nfile = " + quoted(file) + scene_text(words) + materials_text(words, materials) +
          "# ---- Light\n[[source]]\nkind = \"led\"                         # led | led_array | "

@@ -11,7 +11,7 @@
 namespace photorque::verbs::optimise {
 namespace {
 
-// The axes of [sweep] as a box.
+// Ranges of the axes of [sweep] as a box.
 SearchBox box_of(const SweepPlan& plan) {
   SearchBox box;
   for (const SweepAxis& axis : plan.axes) {
@@ -21,7 +21,8 @@ SearchBox box_of(const SweepPlan& plan) {
   return box;
 }
 
-// The value of the experiment for an axis, if it states one; else the middle.
+// Start of the search: for each axis the value of the experiment, if it states one; otherwise the
+// middle of the range.
 std::vector<double> start_of(const SearchBox& box, const SweepPlan& plan,
                              const RunIdentity& identity) {
   std::vector<double> start;
@@ -30,7 +31,7 @@ std::vector<double> start_of(const SearchBox& box, const SweepPlan& plan,
     try {
       value = number_in(toml_text(identity.value({}, plan.axes[i].key))).value_or(value);
     } catch (const InputError&) {
-      // In another unit, or not stated.
+      // Stated in another unit, or not stated.
     }
     start.push_back(std::clamp(value, box.low[i], box.high[i]));
   }
@@ -48,7 +49,7 @@ class Search {
         evaluator_(plan_, engine_) {
     const std::string lacks = missing_search_keys(plan_);
     if (!lacks.empty()) throw file_.settings.error("sweep", "no plan of a search", lacks);
-    // The further designs are those of the search.
+    // The search adds designs, so the plan is not a grid.
     plan_.grid = false;
     box_ = box_of(plan_);
     for (SweepAxis& axis : plan_.axes) axis.values.clear();
@@ -107,7 +108,7 @@ class Search {
     return value;
   }
 
-  // The best of a design at an end of a range may lie beyond it.
+  // Prints axes whose best value is at an end of the range: the optimum may be outside it.
   void print_limits() const {
     const Design* best = nullptr;
     const auto merit = [&](const Design& design) {
@@ -129,7 +130,7 @@ class Search {
     }
   }
 
-  // In parts of the limit, so that constraints of any unit weigh alike.
+  // Margin relative to the limit, so that constraints in different units have comparable weights.
   static double relative_margin(const Constraint& constraint, double value) {
     const auto part = [](double margin, double limit) {
       return std::isinf(limit) || limit == 0.0 ? margin : margin / std::abs(limit);

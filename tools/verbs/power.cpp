@@ -1,4 +1,4 @@
-// photorque power: trace, then the solar array.
+// photorque power: a trace, and the solar array's power from it.
 #include "tools/verbs/power.h"
 
 #include "tools/pages/pages.h"

@@ -1,4 +1,4 @@
-// Trace, then the solar array.
+// A trace, and the solar array's power from it.
 #pragma once
 
 #include <memory>
@@ -16,6 +16,7 @@ struct PowerRun {
   RunResult result;
 };
 
+// Traces the experiment and evaluates its array. Throws InputError for invalid input.
 PowerRun run_power(const RunOptions& options, const Console& console);
 
 }  // namespace photorque

@@ -13,7 +13,7 @@
 namespace photorque {
 namespace {
 
-constexpr int oversampling = 3;  // per pixel and direction
+constexpr int oversampling = 3;  // per pixel in each direction
 constexpr size_t drawn_rays = 200;
 
 float irradiance_at(const OpticalRun& run, const std::vector<std::pair<size_t, FluxMap>>& maps,
@@ -40,7 +40,7 @@ float irradiance_at(const OpticalRun& run, const std::vector<std::pair<size_t, F
   return std::numeric_limits<float>::quiet_NaN();
 }
 
-// The lamps near the scene, which are drawn.
+// The lamps near the scene, for drawing.
 std::vector<DrawnLamp> drawn_lamps(const Experiment& experiment) {
   const double radius_m = experiment.scene.radius_m();
   std::vector<DrawnLamp> lamps;
@@ -54,7 +54,7 @@ std::vector<DrawnLamp> drawn_lamps(const Experiment& experiment) {
   return lamps;
 }
 
-// The experiment's own camera, or, where it gives no place and shows the lamps, one that sees body
+// The experiment's camera; if it states no position and shows the lamps, a camera that shows body
 // and lamps.
 Pinhole camera_of(const Experiment& experiment, const std::vector<DrawnLamp>& lamps) {
   const Camera& given = experiment.camera;
@@ -70,7 +70,7 @@ Pinhole camera_of(const Experiment& experiment, const std::vector<DrawnLamp>& la
   return framing(camera, points_m, static_cast<double>(given.height) / given.width);
 }
 
-// In strips of the picture: all points of a large one would need gigabytes.
+// Computes the view in strips of the picture: all points of a large one would need gigabytes.
 SceneView make_view(const OpticalRun& run, const TraceResult& result, const Pinhole& pinhole,
                     int threads, const std::function<void(double)>& progress) {
   const Experiment& experiment = run.experiment();

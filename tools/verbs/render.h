@@ -18,10 +18,11 @@ struct RenderRun {
   Provenance provenance;
 };
 
-// Traces at the attitude of [attitude] and looks from [camera]. InputError as run_trace().
+// Traces at the attitude of [attitude] and draws the view of [camera]. Throws InputError like
+// run_trace().
 RenderRun run_render(const RunOptions& options, const Console& console);
 
-// "render.png" in the folder, in place of that of the last `render`; gives its path.
+// Writes "render.png" into the folder, replacing that of the last `render`; returns its path.
 std::filesystem::path write_render(const RenderRun& rendered, const std::filesystem::path& folder);
 
 }  // namespace photorque

@@ -12,20 +12,20 @@
 namespace photorque::verbs::schema {
 namespace {
 
-// A key by its path, and the table that holds it: "source.power_W".
+// A key with its path, such as "source.power_W".
 struct FoundKey {
-  std::string path;  // with the choice that brings it: "source (led).power_W"
+  std::string path;  // including the choice that adds the key: "source (led).power_W"
   const Key* key;
 };
 
-// "array.gap_mm" is the key "array.gap_m", in another unit.
+// Whether a name is a key in any unit: "array.gap_mm" is the key "array.gap_m".
 bool is_of_key(const std::string& name, const std::string& wanted) {
   if (name == wanted) return true;
   const KeyUnit unit = unit_of_key(name), other = unit_of_key(wanted);
   return !unit.unit.empty() && !other.unit.empty() && unit.stem == other.stem;
 }
 
-// Paths of all keys as a user writes them.
+// Collects the paths of all keys as a user writes them.
 void add_paths(const std::vector<Key>& keys, const std::string& above, std::set<std::string>& all) {
   for (const Key& key : keys) {
     const std::string path = above + key.name;
@@ -48,7 +48,7 @@ void find(const std::vector<Key>& keys, const std::string& written, const std::s
   }
 }
 
-// The keys of a table, a line each, and the words of a choice with theirs.
+// Prints the keys of a table, one per line, and the values of a choice with their keys.
 void print_keys(const Key& table) {
   for (const Key& key : table.keys) {
     const std::string otherwise = default_in_words(key);
@@ -84,7 +84,7 @@ void print_key(const std::string& wanted) {
 
 struct Options : CommandOptions {
   std::string key;                               // to be explained
-  std::vector<std::filesystem::path> documents;  // whose tables of keys are renewed
+  std::vector<std::filesystem::path> documents;  // documents whose tables of keys are replaced
 };
 
 void add_options(Command& command, Options& options) {

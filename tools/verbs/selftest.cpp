@@ -1,5 +1,6 @@
-// photorque selftest: whether this machine computes correctly. Small experiments whose answers are
-// known in closed form, through the same readers, tracer, propagator and writers as any other.
+// photorque selftest: tests whether this machine computes correctly. It runs small experiments with
+// known closed-form results through the same readers, tracer, propagator and writers as any other
+// run.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr double irradiance_W_m2 = 1361.0, area_m2 = 1.0, arm_m = 2.0;
 
-// A square of 1 m² that looks up, `arm_m` along x from the body's origin: four corners and two
+// A square of 1 m² that faces up, 2 m along x from the body's origin (arm_m): four corners and two
 // triangles as base64.
 std::string plate_gltf() {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
@@ -49,7 +50,7 @@ std::string motion_toml(const std::string& law) {
          law + "\n[propagate]\nduration_s = 10\ninitial_rate_rad_s = [0, 0, 0.5]\n";
 }
 
-// Headline figures by name.
+// Main figures by name.
 using Figures = std::map<std::string, Estimate>;
 
 // Runs small experiments in a separate folder, and writes their results there.
@@ -90,7 +91,8 @@ class Account {
  public:
   explicit Account(const Console& console) : console_(console) {}
 
-  // `found` with its own standard error, and a part of `expected` that theory leaves open.
+  // Compares `found` with `expected`. The tolerance is six standard errors plus the fraction `part`
+  // of `expected`, which covers approximations of the theory.
   void near(const std::string& what, const Estimate& found, double expected, double part) {
     constexpr double sigmas = 6.0;
     const bool right = std::abs(found.value - expected) <=
@@ -118,8 +120,8 @@ bool are_equal(const Figures& a, const Figures& b) {
 }
 
 void check_light(const Bench& bench, Account& account) {
-  // The Sun's rays lean to each other by its radius: momentum along the axis is less by a quarter
-  // of its square, 5e-6.
+  // The Sun's rays are inclined to each other by its angular radius, which reduces the momentum
+  // along the axis by a quarter of the radius squared, 5e-6.
   constexpr double lean = 1e-5;
   const double power_W = irradiance_W_m2 * area_m2, force_N = power_W / speed_of_light_m_s;
   const auto black = bench.trace(plate_toml("absorptance = 1"));

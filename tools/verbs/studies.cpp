@@ -11,7 +11,7 @@
 namespace photorque {
 namespace {
 
-// Null where there is none of this name, or it gives no figures.
+// The verb of this name; null if there is none, or if it has no figures.
 const Verb* study_verb(const std::vector<Verb>& verbs, const std::string& name) {
   const auto verb = std::ranges::find(verbs, name, &Verb::name);
   return verb == verbs.end() || !verb->study ? nullptr : &*verb;
@@ -74,7 +74,7 @@ void throw_failed_study(const CommandOptions& options, const RunOutcome& outcome
 }
 
 void finish_study(Study study, bool may_run, Product more) {
-  // The last of several processes may be two.
+  // Two processes may both be the last; only one at a time writes the results.
   const Claims::Claim alone = study.engine.wait_for_others("table");
   SweepResult& result = study.result;
   result.best = best_design(study.plan, result.designs);

@@ -1,4 +1,4 @@
-// photorque supply: ways to bring power aboard, side by side.
+// photorque supply: comparison of power supplies for the platform.
 #include "tools/verbs/supply.h"
 
 #include "attitude/propagation/run.h"
@@ -10,7 +10,7 @@
 namespace photorque {
 namespace {
 
-// The ways but for those by light, whose tables are handed on.
+// All supplies except those by light, whose tables are returned.
 struct TradeWithoutBeams {
   SupplyTrade trade;
   std::vector<Settings> beams;

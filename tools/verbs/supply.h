@@ -1,4 +1,4 @@
-// Ways to bring power aboard, side by side.
+// Comparison of power supplies for the platform.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace photorque {
 
-// Reads [supply_trade], [platform] and [environment]. Battery, cable and induction have defaults
-// for everything and are compared always, microwaves and beams of light where a table names them.
+// Reads [supply_trade], [platform] and [environment]. Battery, cable and inductive link have
+// defaults for all keys and are always compared; microwaves and light beams are compared if a table
+// names them.
 RunResult run_supply(const RunOptions& options, const Console& console);
 
-// Reads and computes the same but for the light, which is not traced; what would be compared, in
-// words.
+// Reads the same input, but traces no light. Returns a description of the comparison.
 std::string supply_in_words(const RunOptions& options);
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-// photorque sweep: one command over many designs, with their results as one table.
+// photorque sweep: one command over many designs, with the results in one table.
 #include <algorithm>
 #include <cstdio>
 
@@ -67,7 +67,8 @@ class SweepRun {
   }
 
  private:
-  // Every design of this shard, into the shard's own database, and a copy of it when all are done.
+  // Computes every design of this shard in the shard's own database, and writes a copy of it at the
+  // end.
   void run_shard() {
     std::vector<size_t> own = all_designs();
     std::erase_if(own, [this](size_t design) { return !shard_.takes(design); });
@@ -87,7 +88,7 @@ class SweepRun {
     return true;
   }
 
-  // Every design that no shard has done, and the table.
+  // Computes every design that is not in a shard, and writes the table.
   void run_here() {
     RunEngine engine(study_task(options_, plan_, verbs_, files_.database()));
     for (const auto& shard : files_.shards(options_.collect)) engine.database().take_from(shard);

@@ -1,5 +1,5 @@
-// photorque torque-map: force, torque and power over a grid of attitudes, or of directions of
-// light.
+// photorque torque-map: force, torque and power over a grid of attitudes, or wrench over directions
+// of light.
 #include "tools/verbs/torque_map.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace photorque {
 namespace {
 
-// A cell of the table in the terminal, three blanks before it at least.
+// A cell of the printed table, preceded by at least three blanks.
 std::string in_column(const std::string& text) {
   const size_t width = 28, shown = letters_of(text);
   return std::string(3, ' ') + text + std::string(shown < width ? width - shown : 0, ' ');
@@ -117,8 +117,8 @@ TorqueMapRun over_attitudes(const Console& console, const std::shared_ptr<Optica
   for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
     for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
       const size_t node = wrenches.node(h, t);
-      // One seed for all attitudes: neighbouring attitudes share their sampling errors, so that
-      // differences between them are better known than each.
+      // One seed for all attitudes: the sampling errors of neighbouring attitudes are correlated,
+      // so that their differences are more accurate than their values.
       const RigidTransform lab_from_body = lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]);
       const OpticalResult result =
           run.run(lab_from_body, {}, run.experiment().file.torque_map_rays);

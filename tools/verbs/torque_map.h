@@ -1,4 +1,4 @@
-// Force, torque and power over a grid of attitudes, or of directions of light.
+// Force, torque and power over a grid of attitudes, or wrench over directions of light.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,8 @@ struct TorqueMapRun {
   RunResult result;
 };
 
-// The attitudes of [torque_map], or its directions of light; the latter go on from a checkpoint.
+// Computes the attitudes of [torque_map] or its directions of light; the latter can resume from a
+// checkpoint.
 TorqueMapRun run_torque_map(const RunOptions& options, const Console& console,
                             const NodeWatch& watch = {}, CheckpointFile* checkpoint = nullptr);
 

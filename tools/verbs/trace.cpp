@@ -15,7 +15,7 @@
 namespace photorque {
 namespace {
 
-// 0 where light has no one wavelength.
+// Wavelength of a source with a line spectrum; 0 for other spectra.
 double wavelength_m(const Beam& beam) {
   return beam.spectrum.shape == Spectrum::Shape::gaussian ? beam.spectrum.centre_m : 0.0;
 }
@@ -38,11 +38,11 @@ void keep(const Hits& hits, const BinnedHits& binned, double wavelength_m, doubl
   }
 }
 
-// Traces `options.rays` rays and keeps those that meet each of the surfaces, in the body frame:
-// where, the direction of arrival, the power, and the wavelength where the source is a line. A ray
-// that comes back after bounces is there once for every arrival. Their flux sums to the power on
-// the surface; their number varies with options.rays alone, not with options.threads. The set of
-// a surface that no ray meets is empty.
+// Traces `options.rays` rays and stores those that meet each of the surfaces, in the body frame:
+// position, direction, power, and wavelength if the source is a line. A ray that returns after
+// bounces is stored for every arrival. The fluxes sum to the power on the surface. The number of
+// rays depends on options.rays, not on options.threads. The set of a surface that no ray meets is
+// empty.
 std::vector<RaySet> arriving_rays(const TraceableScene& scene, const RigidTransform& lab_from_body,
                                   std::span<const Beam> beams,
                                   std::span<const FluxMapReceiver* const> surfaces,
@@ -51,8 +51,8 @@ std::vector<RaySet> arriving_rays(const TraceableScene& scene, const RigidTransf
   for (const FluxMapReceiver* surface : surfaces) {
     binners.emplace_back(scene.scene(), surface->grid());
   }
-  // [part of the work][surface]: parts in the order of their numbers make the same file at any
-  // number of threads.
+  // [part of the work][surface]: joined in the order of the parts, so that the file does not depend
+  // on the number of threads.
   std::vector<std::vector<std::vector<RaySet::Ray>>> parts(trace_parts(options));
   for (auto& part : parts) part.resize(surfaces.size());
   options.observe = [&](const HitOrigin& origin, const Hits& hits) {
@@ -86,7 +86,7 @@ std::vector<const FluxMapReceiver*> flux_maps(const Experiment& experiment) {
   return maps;
 }
 
-// Reported before the trace, not after it.
+// Checked before the trace.
 void check_ray_files(const Experiment& experiment) {
   if (!experiment.file.effort.arriving_rays) return;
   const Settings trace = experiment.file.settings.table("trace");

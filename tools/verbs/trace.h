@@ -13,8 +13,8 @@ struct TraceRun {
   RunResult result;
 };
 
-// If the experiment enables them, the rays that arrive on each flux map are files of the result;
-// without `with_files` they are not traced.
+// If the experiment enables them, the rays that arrive on each flux map become files of the result;
+// `with_files` = false omits them.
 TraceRun run_trace(const RunOptions& options, const Console& console, bool with_files = true);
 
 }  // namespace photorque

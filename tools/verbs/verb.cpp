@@ -81,14 +81,15 @@ std::string unknown_style(const std::string& name) {
   return "found " + name + ", expected page, paper or slide";
 }
 
-// Commands whose results are files: their text is a summary. That of others is the result.
+// Whether the results of a command are files and its text is only a summary. The text of other
+// commands is the result.
 bool is_brief(const std::string& verb) {
   constexpr std::array brief = {"trace",    "power",  "torque-map", "budget", "propagate", "sweep",
                                 "optimise", "camera", "estimate",   "supply", "balance"};
   return std::ranges::find(brief, verb) != brief.end();
 }
 
-// The first lines of a text at once, the last ones at its end, warnings always.
+// Prints the first lines of a text at once, the last ones at its end, and warnings always.
 class ShortText {
  public:
   explicit ShortText(std::function<void(const std::string&)> print) : print_(std::move(print)) {}
@@ -224,8 +225,7 @@ std::function<Command()> command_that_writes(RunResult (*run)(const RunOptions&,
   };
 }
 
-// Names may come from hostile files: of control characters only ends of lines and tabs reach a
-// terminal.
+// Removes control characters except line ends and tabs: names may come from hostile files.
 static std::string clean_lines(const std::string& text) {
   std::string clean;
   for (size_t begin = 0; begin <= text.size();) {

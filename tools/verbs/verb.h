@@ -24,7 +24,7 @@ struct Verb;
 
 // Options of every command line: photorque VERB EXPERIMENT [--set KEY=VALUE …] [--out DIR] …
 struct CommandOptions : RunOptions {
-  std::string verb;                          // the program sets it
+  std::string verb;                          // set by the program
   std::string name;                          // name of the results; empty: that of the experiment
   std::optional<std::filesystem::path> out;  // --out
   bool quiet = false;                        // only errors are printed
@@ -60,7 +60,7 @@ struct Option {
   template <class Number>
   using Between = std::pair<Number, Number>;
   std::variant<std::monostate, Between<int>, Between<int64_t>, Between<double>> range = {};
-  // The mistake in a value, as a sentence; empty: none.
+  // Returns the mistake in a value as a sentence; empty if there is none.
   std::function<std::string(const std::string&)> mistake = {};
 };
 
@@ -71,7 +71,7 @@ struct Command {
   std::shared_ptr<CommandOptions> options;
   std::vector<Option> list = {};
   Folder folder = Folder::none;
-  // The mistake in a combination of options, as a sentence; empty: none.
+  // Returns the mistake in a combination of options as a sentence; empty if there is none.
   std::function<std::string()> mistake = {};
   std::function<void(const Program&)> run = {};
 
@@ -79,9 +79,9 @@ struct Command {
   void add_common(CommandOptions& common);
   // --out, --format and --style.
   void add_results(CommandOptions& common);
-  // The experiment with --set, those of results, and the common options.
+  // The experiment with --set, the options of results, and the common options.
   void add_experiment(CommandOptions& common, Folder writes = Folder::own, bool required = true);
-  // Also the options of a trace: --target-error, --max-time, --allow-outside.
+  // In addition the options of a trace: --target-error, --max-time, --allow-outside.
   void add_traced_experiment(CommandOptions& common, Folder writes = Folder::own);
   void add_recordings(std::vector<std::filesystem::path>& recordings);
   void add_page(CommandOptions& common);
@@ -96,10 +96,10 @@ struct Verb {
   std::string name;
   std::string summary;  // one sentence for --help
   std::function<Command()> command;
-  // Tables of an experiment that the command reads, and those that it requires, in words.
+  // Tables of an experiment that the command reads, and a description of those that it requires.
   std::vector<std::string> tables = {};
   std::string needs = {};
-  // Computes one design of a sweep, without text and files. Empty: the command has no figures.
+  // Computes one design of a sweep, without text and files. Empty if the command has no figures.
   std::function<RunResult(const RunOptions&)> study = {};
 };
 
@@ -117,7 +117,7 @@ std::function<Command()> command_with(void (*add_options)(Command&, Options&),
   };
 }
 
-// Options of an experiment, and of one that is traced and may become a page.
+// Options of an experiment; of a traced experiment; of one that can also write a page.
 void experiment_options(Command& command, CommandOptions& options);
 void traced_options(Command& command, CommandOptions& options);
 void traced_page_options(Command& command, CommandOptions& options);
@@ -125,7 +125,7 @@ void traced_page_options(Command& command, CommandOptions& options);
 // A command with the options of an experiment that writes the result of `run`.
 std::function<Command()> command_that_writes(RunResult (*run)(const RunOptions&, const Console&));
 
-// Every verb named in tools/CMakeLists.txt, in that order.
+// All verbs listed in tools/CMakeLists.txt, in that order.
 std::vector<Verb> all_verbs();
 
 // Text on standard output: at most 30 lines without --verbose. Lines in the middle are then
@@ -133,7 +133,7 @@ std::vector<Verb> all_verbs();
 // a terminal, otherwise a line at most every ten seconds.
 Console terminal(const CommandOptions& options);
 
-// The formats and the style of --format and --style. InputError for a format that does not exist.
+// Formats and style of --format and --style. Throws InputError for an unknown format.
 RunFormats formats_of(const CommandOptions& options);
 
 // Writes the results and summary.json into the output folder (write_run) and prints its name. With

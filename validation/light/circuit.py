@@ -1,12 +1,12 @@
-"""The array: cells of one diode in strings, with ideal bypass and blocking diodes.
+"""The array: one-diode cells in strings, with ideal bypass and blocking diodes.
 
 A cell obeys  I = L - I0 (exp(x / a) - 1) - G x,  V = x - I Rs,  a = n k T / q  (docs/photovoltaic.md). Its
-junction voltage x at a current I is explicit in Wright's omega function, omega + ln omega = z:
+junction voltage x at a current I is an explicit function, with Wright's omega function omega + ln omega = z:
 
     x = (L - I + I0) / G - a omega(z),   z = (L - I + I0) / (a G) + ln(I0 / (a G))
 
-(after A. Jain and A. Kapoor, Sol. Energy Mater. Sol. Cells 81 (2004) 269). Cells between two bypass
-diodes give at least -drop_V together. Strings lie in parallel.
+(after A. Jain and A. Kapoor, Sol. Energy Mater. Sol. Cells 81 (2004) 269). The voltage of the cells between
+two bypass diodes is at least -drop_V. Strings are in parallel.
 """
 
 import dataclasses
@@ -15,7 +15,7 @@ import functools
 import numpy as np
 from scipy import constants, special
 
-FAR_A = 1000.0  # backwards, beyond all currents that an array is driven to
+FAR_A = 1000.0  # reverse current beyond all currents in an array
 GRID = 400
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 
@@ -36,7 +36,7 @@ class Cell:
 
 @dataclasses.dataclass
 class Circuit:
-    """The array and what effects change of it. Cells are numbered row * columns + column."""
+    """The array and its changes by effects. Cell numbers are row * columns + column."""
 
     columns: int = 1
     rows: int = 1
@@ -49,8 +49,8 @@ class Circuit:
     wavelength_m: float = 730e-9
     cell_area_m2: float = 0.0025
     cell: Cell = Cell()
-    cell_current: np.ndarray = None  # share of a cell's light that becomes current
-    cell_light: np.ndarray = None  # share of the light that reaches a cell
+    cell_current: np.ndarray = None  # fraction of a cell's light that is converted to current
+    cell_light: np.ndarray = None  # fraction of the light that reaches a cell
     string_open: np.ndarray = None
     bypass_shorted: np.ndarray = None
     soiling: float = 1.0
@@ -75,7 +75,7 @@ class Circuit:
 
     @property
     def bypasses(self):
-        """How many bypass diodes all strings have."""
+        """Number of bypass diodes of all strings."""
         return self.strings * -(-(self.cells // self.strings) // self.bypass_every)
 
     def copy(self):
@@ -83,7 +83,7 @@ class Circuit:
         return dataclasses.replace(self, **{name: getattr(self, name).copy() for name in arrays})
 
     def serpentine(self):
-        """Numbers of the cells in the order of the current: every other line runs backwards."""
+        """Numbers of the cells in the order of the current; every other line runs backwards."""
         numbers = np.arange(self.cells).reshape(self.rows, self.columns)
         lines = numbers.T.copy() if self.along_columns else numbers
         lines[1::2] = lines[1::2, ::-1].copy()
@@ -91,9 +91,9 @@ class Circuit:
 
 
 def _crossing(low, high, function):
-    """Where falling functions of arrays cross zero, all at once (C. J. F. Ridders 1979: exponentials are
-    straightened, the bracket stays). A function not above zero at `low`, or not below at `high`, gives
-    that end."""
+    """Zeros of falling functions of arrays, computed together by the method of C. J. F. Ridders (1979), which
+    straightens exponentials and keeps the bracket. If a function is not positive at `low`, or not negative at
+    `high`, the result is that end."""
     low, high = np.array(low, dtype=float), np.array(high, dtype=float)
     f_low, f_high = function(low), function(high)
     x = np.where(f_low <= 0.0, low, high)
@@ -118,7 +118,7 @@ def _crossing(low, high, function):
 
 
 class LitCircuit:
-    """An array under light on its cells: several conditions at once, the first axis of every array."""
+    """An array with light on its cells, for several conditions: the first axis of every array."""
 
     def __init__(self, circuit, light_W_m2, temperature_K):
         """`light_W_m2` (conditions, cells); `temperature_K` (conditions)."""
@@ -160,7 +160,7 @@ class LitCircuit:
         left = photocurrent_A[:, :, None] - current_A[:, None, :] + i0
         x = left / g - a * special.wrightomega(left / (a * g) + np.log(i0 / (a * g)))
         diode = i0 * np.exp(x / a)
-        x = x + (left - diode - g * x) / (diode / a + g)  # takes away the rounding of the difference
+        x = x + (left - diode - g * x) / (diode / a + g)  # removes the rounding error of the difference
         return x - current_A[:, None, :] * self.circuit.cell.series_ohm + self.extra_V[:, None, None]
 
     def _string_voltage(self, string, current_A):
@@ -171,7 +171,7 @@ class LitCircuit:
         return voltage
 
     def _solve_current(self, voltage_V, voltage_at):
-        """Currents (conditions, n) at which a falling `voltage_at` meets `voltage_V`."""
+        """Currents (conditions, n) at which a falling `voltage_at` equals `voltage_V`."""
         high = np.broadcast_to(1.5 * self.largest_A[:, None] + 1.0, voltage_V.shape)
         if self.circuit.blocking:
             low = np.zeros_like(high)
@@ -180,11 +180,12 @@ class LitCircuit:
         return _crossing(low, high, lambda current: voltage_at(current) - voltage_V)
 
     def _parallel(self, voltage_V):
-        """Current of all strings at a common voltage."""
+        """Total current of all strings at a common voltage."""
         return sum(self._solve_current(voltage_V, functools.partial(self._string_voltage, s)) for s in self.carrying)
 
     def _at(self, parameter):
-        """Voltage and current at the terminals: by the current of an only string, by the voltage of several."""
+        """Voltage and current at the terminals. The parameter is the current for a single string, the voltage for
+        several strings."""
         if len(self.carrying) == 1:
             voltage, current = self._string_voltage(self.carrying[0], parameter), parameter
         else:
@@ -214,7 +215,7 @@ class LitCircuit:
         return self._parallel(_crossing(*ends, lambda inner: voltage - self._at(inner)[0]))
 
     def _coarse(self):
-        """Parameters of `_at` on a grid (conditions, GRID + 1) and the power there, to find maxima by."""
+        """Parameters of `_at` on a grid (conditions, GRID + 1) and the power there, for the search for maxima."""
         share = np.linspace(0.0, 1.0, GRID + 1)
         if len(self.carrying) == 1:
             grid = 1.001 * self.largest_A[:, None] * share
@@ -231,7 +232,7 @@ class LitCircuit:
         return grid, (grid - total * self.circuit.series_ohm) * total
 
     def maxima(self):
-        """Of every condition a list of (voltage, current) at the local maxima of the power, highest first."""
+        """For every condition a list of (voltage, current) at the local maxima of the power, highest first."""
         found = [[] for _ in self.largest_A]
         if not self.carrying:
             return found
@@ -268,7 +269,7 @@ class LitCircuit:
         return found
 
     def _some(self, conditions):
-        """The circuit under some of its conditions, in the order of their numbers; they may repeat."""
+        """The circuit for some of its conditions, by their numbers in order; numbers may repeat."""
         part = LitCircuit.__new__(LitCircuit)
         part.__dict__.update(self.__dict__)
         for name in ("slope_V", "saturation_A", "extra_V", "largest_A"):

@@ -1,7 +1,7 @@
-"""Effects on light and power: how they change a world, how examples are drawn, and their rivals.
+"""Effects on light and power: how they change a world, random examples, and competing effects.
 
 Kinds and keys are those of [[effect]] in docs/experiment.md. Five laws are outside the catalogue: a
-ripple, vignetting and a hair over the plate, a slow drift and a flicker of the lamps.
+ripple, vignetting, a hair over the plate, a slow drift and a flicker of the lamps.
 """
 
 import dataclasses
@@ -15,7 +15,7 @@ from .illumination import Box
 
 @dataclasses.dataclass(frozen=True)
 class Effect:
-    """An effect with its numbers as truth.json states them: a number or a list of numbers by key."""
+    """An effect with its numbers as stated by truth.json: a number or a list of numbers per key."""
 
     kind: str
     index: int | None = None  # of a lamp, cell, string, bypass diode or wall
@@ -29,7 +29,7 @@ def _change_lamps(world, change, only=None):
 
 
 def _turned(axis, angles_deg):
-    """A direction turned by two angles, towards lab x and y made perpendicular to it."""
+    """A direction rotated by two angles, towards lab x and y made perpendicular to it."""
     axis = np.array(axis)
     direction = axis.copy()
     for side, angle in zip(np.eye(3), angles_deg):
@@ -47,7 +47,7 @@ def _derate(world, index, factor):
 
 
 def _widen(world, _, scale):
-    """All beams `scale` times as wide; the width of cos^m goes as m^(-1/2)."""
+    """Makes all beams `scale` times as wide; the width of cos^m is proportional to m^(-1/2)."""
 
     def wider(lamp):
         beam = lamp.beam
@@ -198,23 +198,23 @@ CATALOGUE = {
 
 
 def act(effect, world):
-    """Changes a world as an effect does."""
+    """Applies an effect to a world."""
     (CATALOGUE | LAWS)[effect.kind](world, effect.index, **effect.numbers)
 
 
 @dataclasses.dataclass(frozen=True)
 class Rival:
-    """An effect that may explain what another does: its numbers as a fit varies them."""
+    """An effect that may explain another effect, with the numbers that a fit varies."""
 
     kind: str
     index: int | None = None
-    neutral: tuple = ()  # at which nothing happens
+    neutral: tuple = ()  # values without effect
     step: tuple = ()
     low: tuple = ()
     high: tuple = ()
 
     def act(self, world, x):
-        """Changes a world; of a shunt the number is the conductance, which is 0 where there is none."""
+        """Applies the effect to a world. The number of a shunt is its conductance, which is 0 without a shunt."""
         if self.kind == "shunt":
             world.circuit.shunt_S += x[0]
         elif self.kind in ("led_aim", "source_shift", "attitude_bias"):
@@ -265,19 +265,19 @@ def rivals_of(world, has_scans, has_circuit, has_runs):
 
 @dataclasses.dataclass(frozen=True)
 class Recipe:
-    """An effect up to its strength: `at` gives it at a strength from 0 (nothing) to 1."""
+    """An effect with variable strength: `at` returns it at a strength from 0 (no effect) to 1."""
 
     at: object
     has_strength: bool = True
 
 
 def _one(kind, key, none, full, index=None, **others):
-    """A recipe of one number that goes from `none` to `full`."""
+    """A recipe of one number that varies from `none` to `full`."""
     return Recipe(lambda s: Effect(kind, index, {**others, key: none + s * (full - none)}))
 
 
 def _several(kind, key, full, index=None):
-    """A recipe of numbers that go from 0 to `full`."""
+    """A recipe of numbers that vary from 0 to `full`."""
     return Recipe(lambda s: Effect(kind, index, {key: [float(s * x) for x in full]}))
 
 
@@ -298,7 +298,7 @@ def _shadow_recipe(draw, plate):
 
 
 def draw_recipe(draw, world, kind, duration_s):
-    """A recipe of a kind for a world; `duration_s` of its run."""
+    """A recipe of a kind for a world; `duration_s` is that of its run."""
     plate, circuit = world.room.plate, world.circuit
     sign, angle = draw.sign(), draw.uniform(0.0, 2.0 * math.pi)
     around = np.array([math.cos(angle), math.sin(angle)])

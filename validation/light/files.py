@@ -32,7 +32,8 @@ def _wall_name(world, wall):
 
 
 def _gltf(rectangles):
-    """A glTF 2.0 scene of named rectangles; corners counter-clockwise as seen, in body axes. Its y is up."""
+    """A glTF 2.0 scene of named rectangles. Corners are counter-clockwise as seen from the front, in body axes; y is
+    up in glTF."""
     data, views, accessors = b"", [], []
     for corners in rectangles.values():
         vertices = np.array([(x, z, -y) for x, y, z in corners], dtype="<f4")
@@ -91,7 +92,7 @@ def _scene(world):
 
 
 def experiment_text(case):
-    """The nominal model of the light, the array and the instruments."""
+    """Nominal model of the light, the array and the instruments."""
     circuit, noise = case.believed.circuit, case.noise
     cell, size = circuit.cell, circuit.cell_area_m2 / REFERENCE_AREA_M2
     efficiency = {"wavelength_nm": [600, 860], "efficiency": [circuit.efficiency] * 2}
@@ -148,7 +149,7 @@ def experiment_text(case):
 
 
 def oracle_text(case):
-    """The experiment with every effect that acts, with its true numbers."""
+    """The experiment with every acting effect and its true numbers."""
     text = experiment_text(case)
     for effect in case.effects:
         keys = {"kind": effect.kind}
@@ -169,7 +170,7 @@ def oracle_text(case):
 
 
 def _recording_text(case, name):
-    """A recording with noise; a dirty one with comments, lost rows and wild readings."""
+    """A recording with noise; a dirty one also has comments, lost rows and outliers."""
     rows = case.recordings[name]
     draw = Draw(*case.seed, 2, *name.encode()).generator
     values, count = readings.read(case.truth(), rows), len(rows)

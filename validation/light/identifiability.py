@@ -6,15 +6,15 @@ import numpy as np
 
 from . import effects, readings
 
-MOST_ROWS = {"scan": 300, "sweep": 80, "run": 32}  # of a recording that are used
+MOST_ROWS = {"scan": 300, "sweep": 80, "run": 32}  # maximum number of rows of a recording that are used
 
 
 class Judge:
-    """The recordings of a case to fit, thinned, and the errors of their readings."""
+    """The fitted recordings of a case, thinned, with the errors of their readings."""
 
     def __init__(self, world, noise, recordings):
         self.world = world
-        self.parts = []  # rows and the weight of every number of theirs
+        self.parts = []  # rows, and the weights of their numbers
         for rows in recordings.values():
             if not rows.is_first:
                 continue
@@ -27,7 +27,7 @@ class Judge:
         self.known_slopes = {}  # of rivals, at the nominal world
 
     def whitened(self, world):
-        """All readings in units of their errors; those left out count with the ones beside them."""
+        """All readings in units of their errors; weights account for the omitted rows."""
         return np.concatenate([(readings.read(world, rows) * weight).ravel() for rows, weight in self.parts])
 
     def with_effects(self, some):
@@ -37,14 +37,14 @@ class Judge:
         return world
 
     def gain(self, some):
-        """chi² of the nominal world where these effects act."""
+        """chi² of the nominal world if these effects act."""
         return float(np.sum((self.whitened(self.with_effects(some)) - self.nominal) ** 2))
 
     def rivals(self):
         return effects.rivals_of(self.world, "scan" in self.kinds, bool(self.kinds - {"scan"}), "run" in self.kinds)
 
     def slopes(self, rival):
-        """Slopes of the readings with the rival's numbers where nothing acts, a column each."""
+        """Derivatives of the readings with respect to the rival's numbers at their neutral values, one column each."""
         key = (rival.kind, rival.index)
         if key not in self.known_slopes:
             columns = []
@@ -56,8 +56,8 @@ class Judge:
         return self.known_slopes[key]
 
     def left(self, kept, rivals, target, near):
-        """The chi² that remains of `target` when the numbers of `rivals` are fitted beside `kept`. A fraction of
-        light starts from less too: a cell shows little until it limits its string."""
+        """Residual chi² of `target` when the numbers of `rivals` are fitted together with `kept`. A fraction of light
+        is also started from smaller values: a cell has little influence until it limits its string."""
         best = self._fit(kept, rivals, target, None)
         if rivals[-1].kind in ("cell_shaded", "cell_degraded", "led_derated"):
             for share in (0.4, 0.1):
@@ -65,8 +65,7 @@ class Judge:
         return best
 
     def _fit(self, kept, rivals, target, last):
-        """The fit by Levenberg's and Marquardt's method within the bounds; `last` is where the last number
-        starts."""
+        """Fit by the Levenberg–Marquardt method within the bounds; `last` is the initial value of the last number."""
         x, step, low, high = (
             np.array([n for r in rivals for n in getattr(r, name)]) for name in ("neutral", "step", "low", "high")
         )
@@ -103,27 +102,27 @@ class Judge:
                     improved = remains < 0.98 * best
                     best, x, now = remains, next_x, trial
                     break
-            # An effect that leaves most after its first steps is no rival.
+            # An effect with a large residual after the first steps is not a rival.
             if not improved or best > max(3000.0, 0.3 * begin):
                 break
         return best
 
     @functools.cached_property
     def _catalogue(self):
-        """An orthonormal basis of all changes of the readings that numbers of the catalogue make."""
+        """Orthonormal basis of all changes of the readings due to numbers of the catalogue."""
         columns = np.column_stack([self.slopes(rival) for rival in self.rivals() if rival.neutral])
         length = np.linalg.norm(columns, axis=0)
         basis, singular, _ = np.linalg.svd(columns[:, length > 0.0] / length[length > 0.0], full_matrices=False)
         return basis[:, singular > 1e-3 * singular[0]]
 
     def unexplained(self, some):
-        """The growth of chi² under these effects beyond all numbers of the catalogue, to first order."""
+        """Growth of chi² due to these effects beyond all numbers of the catalogue, to first order."""
         off = self.whitened(self.with_effects(some)) - self.nominal
         return float(np.sum((off - self._catalogue @ (self._catalogue.T @ off)) ** 2))
 
     def accepted(self, acting, near):
-        """Which answers count as right where `acting` acts: sets of names, indices by name, and the least
-        chi² that one effect alone leaves. An answer counts where it leaves less than `near`."""
+        """Answers that count as correct if `acting` acts: sets of names, indices by name, and the smallest chi² that
+        a single effect leaves. An answer counts if it leaves less than `near`."""
         target = self.whitened(self.with_effects(acting))
         names, indices = [sorted(e.kind for e in acting)], {}
 
@@ -149,7 +148,7 @@ class Judge:
             for rival in rivals:
                 if rival.kind != effect.kind and self.left(kept, [*same, rival], target, near) < near:
                     accept([effect.kind, rival.kind], rival)
-        if "scan" in self.kinds:  # a box over one cell is a shade over it
+        if "scan" in self.kinds:  # a box over one cell has the effect of shading this cell
             for kinds in [n for n in names if "cell_shaded" in n]:
                 accept(["unmodelled_shadow" if kind == "cell_shaded" else kind for kind in kinds])
         return names, {kind: sorted(set(numbers)) for kind, numbers in indices.items()}, alone

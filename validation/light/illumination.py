@@ -1,13 +1,13 @@
-"""Irradiance of lamps on a plate, with shadows and with light that one wall reflects.
+"""Irradiance of lamps on a plate, with shadows and with light reflected by one wall.
 
-A lamp is a disc that emits evenly over its area. Its radiant intensity falls with the angle to its axis,
-the same from every place of the disc, so that a small receiver gets (J. H. Lambert 1760)
+A lamp is a disc that emits uniformly over its area. Its radiant intensity depends on the angle to its axis
+and is equal at every point of the disc. The irradiance at a point is (J. H. Lambert 1760)
 
     E = P / A  *  integral over the disc of  I(angle) cos(incidence) / r^2  dA,   I in 1/sr per watt.
 
-The integral is a product rule (Gauss in the squared radius, even in azimuth). Where something may hide a
-part of the disc, the hidden part is integrated by a scrambled Sobol sequence and subtracted. Everything
-is computed in body axes: the plate lies across body z and looks along it.
+The integral is a product rule (Gauss in the squared radius, uniform in azimuth). If an object may hide a
+part of the disc, the hidden part is integrated with a scrambled Sobol sequence and subtracted. All
+computations are in body axes: the plate is perpendicular to body z and faces along it.
 """
 
 import dataclasses
@@ -19,8 +19,8 @@ from scipy import integrate
 from scipy.spatial.transform import Rotation
 from scipy.stats import qmc
 
-DISC_SAMPLES = 1024  # places of a disc that is hidden in part
-CELL_SAMPLES = 2**14  # pairs of a place on the disc and a point of the cell, likewise
+DISC_SAMPLES = 1024  # points of a partly hidden disc
+CELL_SAMPLES = 2**14  # pairs of a point of a partly hidden disc and a point of the cell
 MIRROR_SAMPLES = 256
 WALL_PATCHES = (150, 60)  # along and up
 MOST_KNOWN = 4000
@@ -28,7 +28,7 @@ MOST_KNOWN = 4000
 
 @dataclasses.dataclass(frozen=True)
 class Beam:
-    """How the radiant intensity falls with the angle from the axis (docs/experiment.md, [[source]])."""
+    """Decrease of the radiant intensity with the angle from the axis (docs/experiment.md, [[source]])."""
 
     profile: str  # "gaussian", "super_gaussian" or "cosine_power"
     fwhm_rad: float = 0.1
@@ -36,7 +36,7 @@ class Beam:
     exponent: float = 10.0
 
     def relative(self, cosine):
-        """Intensity over that on the axis, at angles of these cosines; 0 behind the lamp."""
+        """Intensity relative to the axis at angles of these cosines; 0 behind the lamp."""
         front = np.clip(cosine, 0.0, 1.0)
         if self.profile == "cosine_power":
             return front**self.exponent
@@ -46,7 +46,7 @@ class Beam:
 
     @functools.lru_cache(maxsize=1000)
     def on_axis_per_sr(self):
-        """Intensity on the axis [1/sr] of a lamp of one watt."""
+        """Intensity on the axis [1/sr] of a lamp of 1 W."""
         if self.profile == "cosine_power":
             return (self.exponent + 1.0) / (2.0 * math.pi)
 
@@ -72,7 +72,7 @@ class Lamp:
 
 @dataclasses.dataclass(frozen=True)
 class Wall:
-    """A rectangle across body x (axis 0) or y (axis 1) that reflects on the side `facing` (+1 or -1)."""
+    """A rectangle perpendicular to body x (axis 0) or y (axis 1) that reflects on the side `facing` (+1 or -1)."""
 
     axis: int
     at_m: float
@@ -92,7 +92,7 @@ class Wall:
         return low, high
 
     def black(self):
-        """A wall without reflection: the key of quantities that depend on its geometry alone."""
+        """The wall without reflection: the key of quantities that depend only on its geometry."""
         return dataclasses.replace(self, diffuse=0.0, specular=0.0)
 
 
@@ -125,7 +125,7 @@ def _gauss(count):
 
 @functools.lru_cache
 def _disc_rule(rings=3, around=7):
-    """Places on the unit disc (n, 2) and their fractions of the area."""
+    """Points of the unit disc (n, 2) and their fractions of the area."""
     squares, weights = _gauss(rings)
     angles = [2.0 * math.pi * (np.arange(around) + k / rings) / around for k in range(rings)]
     places = [math.sqrt(s) * np.column_stack([np.cos(a), np.sin(a)]) for s, a in zip(squares, angles)]
@@ -144,7 +144,7 @@ def _on_disc(unit):
 
 
 class Points:
-    """Single points of the plate, as a photodiode scans them."""
+    """Single points of the plate, as scanned by a photodiode."""
 
     has_glass = False
 
@@ -154,21 +154,21 @@ class Points:
         self.key = (plate.z_m, self.points.tobytes())
 
     def average(self, values):
-        """One value per place from values at all points, the last axis."""
+        """One value per place, from values at all points (last axis)."""
         return values
 
     def fine(self, disc_samples=DISC_SAMPLES):
-        """For every place: points (n, m, 3) of it, and places on the unit disc (m, 2) to go with them."""
+        """For every place: points (n, m, 3) in it, and the corresponding points of the unit disc (m, 2)."""
         disc = _on_disc(_sobol(2, disc_samples))
         return np.repeat(self.points[:, None, :], len(disc), axis=1), disc
 
     def probes(self):
-        """Points (n, m, 3) that find out whether a place may lie in a shadow."""
+        """Points (n, m, 3) for testing whether a place may be shaded."""
         return self.points[:, None, :]
 
 
 class Cells:
-    """Means over the cells of a regular array, behind the glass where there is one."""
+    """Means over the cells of a regular array, behind the glass if there is one."""
 
     has_glass = True
 
@@ -215,7 +215,7 @@ def crosses_box(low, high, start, end):
 
 
 def fresnel_ratio(index, cosine):
-    """Transmission of unpolarised light into glass over that at normal incidence (Fresnel's equations)."""
+    """Transmittance of unpolarised light into glass, relative to normal incidence (Fresnel's equations)."""
     sine = np.sqrt(np.maximum(0.0, 1.0 - cosine**2)) / index
     inside = np.sqrt(1.0 - sine**2)
     across = ((cosine - index * inside) / (cosine + index * inside)) ** 2
@@ -231,18 +231,18 @@ class _Aperture:
     radius_m: float
     centre: np.ndarray
     axis: np.ndarray
-    across: np.ndarray  # two radii across the axis, a row each
+    across: np.ndarray  # two radii perpendicular to the axis, one per row
 
     @classmethod
     def of(cls, lamp, lab_from_body):
         axis = np.asarray(lamp.axis) @ lab_from_body
-        # Two unit vectors across the axis: rows of the Householder matrix that turns it into z.
+        # Two unit vectors perpendicular to the axis: rows of the Householder matrix that rotates the axis to z.
         away = axis + np.array([0.0, 0.0, math.copysign(1.0, axis[2])])
         across = (np.eye(3) - 2.0 * np.outer(away, away) / (away @ away))[:2]
         return cls(lamp.beam, lamp.radius_m, np.asarray(lamp.position_m) @ lab_from_body, axis, lamp.radius_m * across)
 
     def behind_mirror(self, wall):
-        """The lamp's image in the plane of a wall."""
+        """The lamp's mirror image in the plane of a wall."""
         turn = np.ones(3)
         turn[wall.axis] = -1.0
         centre = self.centre * turn
@@ -250,11 +250,11 @@ class _Aperture:
         return _Aperture(self.beam, self.radius_m, centre, self.axis * turn, self.across * turn)
 
     def places(self, disc):
-        """Points of the aperture at places (n, 2) of the unit disc."""
+        """Points of the aperture for points (n, 2) of the unit disc."""
         return self.centre + disc @ self.across
 
     def received(self, source, point, normal, glass_index=None):
-        """Irradiance per watt at `point` as if all light came from `source`; normal along an axis."""
+        """Irradiance per watt at `point` if all light came from `source`; the normal is along an axis."""
         to = [point[..., k] - source[..., k] for k in range(3)]
         r2 = to[0] ** 2 + to[1] ** 2 + to[2] ** 2
         r = np.sqrt(r2)
@@ -265,12 +265,12 @@ class _Aperture:
         return light if glass_index is None else light * fresnel_ratio(glass_index, meets)
 
 
-UP = (2, 1.0)  # a normal: which body axis, and its sign
+UP = (2, 1.0)  # a normal: index of the body axis, and its sign
 
 
 @dataclasses.dataclass
 class Room:
-    """Everything that the light depends on."""
+    """All inputs of the light."""
 
     plate: Plate
     lamps: list = dataclasses.field(default_factory=list)
@@ -279,7 +279,7 @@ class Room:
     ambient_W_m2: float = 0.0
     bias_rad: tuple = (0.0, 0.0)  # of the attitude, a rotation vector about lab x and y
     glass_index: float | None = None  # of a cover over the cells
-    # Light of one watt that was computed before; copies of a room share it.
+    # Cache of light for lamps of 1 W; copies of a room share it.
     known: dict = dataclasses.field(default_factory=dict)
 
     def copy(self):
@@ -300,7 +300,7 @@ class Room:
         return light
 
     def _of_lamp(self, way, lamp, lab_from_body, places, wall):
-        """Light of one lamp of one watt by one way, looked up where it was computed before."""
+        """Light of one lamp of 1 W along one path (direct or by a wall), cached."""
         glass = self.glass_index if places.has_glass and way == "direct" else None
         walls = tuple(w.black() for w in self.walls)
         shape = (lamp.position_m, lamp.axis, lamp.radius_m, lamp.beam)
@@ -319,7 +319,7 @@ class Room:
         return self.known[key]
 
     def _occluders(self, but, lab_from_body):
-        """Bounds of everything opaque, with the matrix that turns body vectors into its axes."""
+        """Bounds of all opaque objects, with the matrix that rotates body vectors to their axes."""
         for wall in self.walls:
             if wall.black() != but:
                 yield (*wall.bounds(), None)
@@ -327,7 +327,7 @@ class Room:
             yield np.array(box.low_m), np.array(box.high_m), None if box.on_body else lab_from_body.T
 
     def _hidden(self, start, end, but, lab_from_body, margin=0.0):
-        """Whether something opaque, grown by `margin`, lies between two points."""
+        """Whether an opaque object, enlarged by `margin`, is between two points."""
         hidden = np.zeros(np.broadcast_shapes(start.shape, end.shape)[:-1], dtype=bool)
         for low, high, turn in self._occluders(but, lab_from_body):
             a, b = (start, end) if turn is None else (start @ turn, end @ turn)
@@ -355,7 +355,7 @@ class Room:
         return light
 
     def _patches(self, wall):
-        """Centres (n, 3) and areas of the wall's patches; low strips are narrow, the plate is near."""
+        """Centres (n, 3) and areas of the wall's patches; low strips are narrow, because the plate is near."""
         along, up = WALL_PATCHES
         width = (wall.to_m - wall.from_m) / along
         edges = wall.bottom_m + (wall.top_m - wall.bottom_m) * (np.arange(up + 1) / up) ** 2
@@ -375,7 +375,7 @@ class Room:
         return self._direct(aperture, patches, lab_from_body, (wall.axis, wall.facing), wall, None)
 
     def _transfer(self, wall, places):
-        """Irradiance at every place from a unit of irradiance on every patch of a white Lambertian wall."""
+        """Irradiance at every place for unit irradiance on every patch of a white Lambertian wall."""
         key = ("transfer", wall, places.key)
         if key not in self.known:
             centres, areas = self._patches(wall)
@@ -391,7 +391,7 @@ class Room:
         return self.known[key]
 
     def _mirrored(self, aperture, wall, places):
-        """Light per watt by way of a perfect mirror: that of the lamp's image, seen through the wall."""
+        """Light per watt reflected by a perfect mirror: that of the lamp's image, seen through the wall."""
         if (aperture.centre[wall.axis] - wall.at_m) * wall.facing <= 0.0:
             return np.zeros(len(places.average(places.points[:, 0])))
         image = aperture.behind_mirror(wall)

@@ -1,4 +1,4 @@
-"""Readings of instruments in a world: scans of a photodiode, current-voltage sweeps, runs of a tracker."""
+"""Readings of instruments in a world: scans of a photodiode, current-voltage sweeps, runs with a tracker."""
 
 import dataclasses
 
@@ -8,12 +8,12 @@ from scipy.spatial.transform import Rotation
 from .circuit import Circuit, LitCircuit
 from .illumination import Cells, Points, Room
 
-RUN_ORDER = 5  # of the Gauss rule over a cell, for the many attitudes of a run
+RUN_ORDER = 5  # of the Gauss rule over a cell in a run, which has many attitudes
 
 
 @dataclasses.dataclass
 class World:
-    """Everything that the readings depend on."""
+    """All inputs of the readings."""
 
     room: Room
     circuit: Circuit
@@ -21,7 +21,8 @@ class World:
     droop_depth: float = 0.0
     droop_time_s: float = 1.0
     trapped_s: list = dataclasses.field(default_factory=list)  # intervals of the first run
-    # Laws outside the catalogue: functions of (u_m, v_m, t_s) that multiply a scan or the light of a run.
+    # Laws outside the catalogue: functions of (u_m, v_m, t_s) that multiply the readings of a scan or the light of a
+    # run.
     laws: list = dataclasses.field(default_factory=list)
 
     def copy(self):
@@ -43,7 +44,7 @@ class World:
 
 @dataclasses.dataclass(frozen=True)
 class Noise:
-    """Standard deviations as the experiment states them."""
+    """Standard deviations stated by the experiment."""
 
     irradiance_W_m2: float = 4.0
     relative: float = 0.01
@@ -53,10 +54,10 @@ class Noise:
 
 @dataclasses.dataclass
 class Rows:
-    """Where the plate stands and what is set, row by row. Columns that a kind does not have are empty."""
+    """Attitude of the plate and settings, row by row. Columns that a kind does not have are empty."""
 
     kind: str  # "scan", "sweep" or "run"
-    is_first: bool  # a recording to fit; else one held out
+    is_first: bool  # fitted; otherwise held out
     quaternions: np.ndarray  # (n, 4) lab from body, w first
     tilt_deg: np.ndarray = None
     heading_deg: np.ndarray = None
@@ -90,7 +91,7 @@ class Rows:
 
 
 def quaternion_at(tilt_deg, heading_deg):
-    """Attitude (w, x, y, z) of a plate that leans by the tilt towards the heading."""
+    """Attitude (w, x, y, z) of a plate tilted towards the heading."""
     heading = np.radians(heading_deg)
     turn = np.radians(tilt_deg) * np.array([-np.sin(heading), np.cos(heading), 0.0])
     return np.roll(Rotation.from_rotvec(turn).as_quat(), 1)
@@ -154,7 +155,7 @@ def read(world, rows):
 
 
 def errors(world, rows, noise, readings):
-    """Standard deviation of every reading; that of a sweep's current holds the error of its voltage."""
+    """Standard deviation of every reading; for the current of a sweep it includes the error of the voltage."""
     if rows.kind == "scan":
         return np.hypot(noise.irradiance_W_m2, noise.relative * readings)
     if rows.kind == "run":

@@ -1,4 +1,4 @@
-"""The cases of a plan of light and power: which effects, in which laboratory, how strong."""
+"""Cases of a plan of light and power: their effects, laboratory and strength."""
 
 import dataclasses
 import math
@@ -12,11 +12,11 @@ from .circuit import LitCircuit
 from .files import write_case
 from .identifiability import Judge
 
-SHOWS = 30.0  # growth of chi² from which on a name is asked for
+SHOWS = 30.0  # growth of chi² above which an effect should be named
 ATTEMPTS = 40
 KINDS = list(effects.CATALOGUE)
 LAWS = list(effects.LAWS)
-WEAK_KINDS = [  # that can be as weak as one likes
+WEAK_KINDS = [  # can be arbitrarily weak
     "led_derated",
     "led_aim",
     "beam_divergence",
@@ -33,8 +33,8 @@ WEAK_KINDS = [  # that can be as weak as one likes
     "shunt",
     "temperature_coefficient",
 ]
-# Growth of chi² (lowest, highest) that is asked for, by family, and of single effects by level. Of laws
-# outside the catalogue it is what the catalogue leaves of it.
+# Required growth of chi² (lowest, highest) by family, and by level for single effects. For laws outside the catalogue
+# it is the part that the catalogue cannot explain.
 GAINS = {"below": (0.3, 3.0), "pair": (500.0, 5e4), "outside": (120.0, 3000.0)}
 LEVELS = [(2e4, 1e6), (1000.0, 2e4), (100.0, 1000.0)]
 DEPENDS_ON = {"slow_drift": ["time"], "flicker": ["time"]}
@@ -42,7 +42,7 @@ DEPENDS_ON = {"slow_drift": ["time"], "flicker": ["time"]}
 
 @dataclasses.dataclass
 class Case:
-    """A case before it is written; `accept` and `accept_index` as truth.json has them."""
+    """A case before it is written; `accept` and `accept_index` are those of truth.json."""
 
     name: str
     family: str  # "none", "single", "pair", "outside" or "below"
@@ -68,12 +68,12 @@ class Case:
 
 
 def case_count(plan):
-    """How many cases a plan has."""
+    """Number of cases in a plan."""
     return len(KINDS) * plan.per_kind + plan.none + plan.pairs + len(LAWS) * plan.outside + plan.below
 
 
 def _go_together(a, b):
-    """Whether two kinds show in the same recordings and are distinguishable."""
+    """Whether two kinds are visible in the same recordings and can be distinguished."""
     for one, other in ((a, b), (b, a)):
         if one in ("led_droop", "tracker_trapped") and other in setting.NO_RUN_KINDS:
             return False
@@ -82,7 +82,7 @@ def _go_together(a, b):
 
 
 def _choose(plan, index, attempt):
-    """Family, kinds, number among its like and level of the case `index`."""
+    """Family, kinds, number within its group and level of the case `index`."""
     if index < len(KINDS) * plan.per_kind:
         number, kind = divmod(index, len(KINDS))
         return "single", [KINDS[kind]], number, (number + index) % 3
@@ -104,7 +104,7 @@ def _choose(plan, index, attempt):
 
 
 def _effect_of_gain(gain, recipe, wanted):
-    """The recipe's effect at which `gain` of it is `wanted`; None where it cannot be."""
+    """The recipe's effect for which `gain` equals `wanted`; None if this is impossible."""
     full = recipe.at(1.0)
     most = gain([full])
     if not recipe.has_strength:
@@ -122,8 +122,8 @@ def _effect_of_gain(gain, recipe, wanted):
 
 
 def _shorten_sweeps(case):
-    """Ends curves at the open circuit that the array now has, where that is far below the nominal one: no
-    instrument drives such currents backwards. Returns whether any was changed."""
+    """Ends curves at the present open-circuit voltage if it is far below the nominal one: instruments do not drive
+    such reverse currents. Returns whether any curve was changed."""
     truth, changed = case.truth(), False
     for rows in case.recordings.values():
         if rows.kind != "sweep":
@@ -142,7 +142,7 @@ def _shorten_sweeps(case):
 
 
 def _attempt(plan, index, attempt):
-    """The case `index`, or None where what was drawn does not show."""
+    """The case `index`, or None if the drawn effects are not visible."""
     family, kinds, number, level = _choose(plan, index, attempt)
     seed = (plan.seed, index, attempt)
     draw = setting.RoundedDraw(*seed, 1)
@@ -174,12 +174,12 @@ def _attempt(plan, index, attempt):
         case.depends_on = DEPENDS_ON.get(kinds[0], ["position", "irradiance"])
         return case
     case.accept, case.accept_index, alone = judge.accepted(case.effects, SHOWS)
-    # A pair of which one is hardly needed is no pair.
+    # A pair is rejected if one of its effects is hardly needed.
     return None if family == "pair" and alone < 5.0 * SHOWS else case
 
 
 def draw_case(plan, index):
-    """The case `index` (0-based) of a plan; MotionError where none that shows is found."""
+    """The case `index` (0-based) of a plan. Raises MotionError if no visible case is found."""
     for attempt in range(ATTEMPTS):
         case = _attempt(plan, index, attempt)
         if case is not None:
@@ -188,6 +188,6 @@ def draw_case(plan, index):
 
 
 def make_case(plan, index, folder):
-    """Makes the case `index` (0-based) of a plan in `folder`: the same plan gives the same cases, in
-    whatever order they are made."""
+    """Makes the case `index` (0-based) of a plan in `folder`. Equal plans give equal cases, independent of their
+    order."""
     write_case(draw_case(plan, index), folder)

@@ -1,4 +1,4 @@
-"""Lamps, plates, arrays and recordings as in a laboratory, drawn at random."""
+"""Random lamps, plates, arrays and recordings as in a laboratory."""
 
 import math
 
@@ -25,11 +25,11 @@ SCAN_KINDS = {"detector_gain", "ripple", "vignetting", "hair", "interreflection"
 NO_RUN_KINDS = SCAN_KINDS | {"unmodelled_shadow", "string_open", "bypass_shorted"}
 REFERENCE_AREA_M2 = 0.0025
 REFERENCE_K = 298.15
-EDGE_M = 0.005  # of the plate, which a scan leaves out
+EDGE_M = 0.005  # edge of the plate, which a scan omits
 
 
 class RoundedDraw(Draw):
-    """Random numbers with the digits that an experiment file states."""
+    """Random numbers with as many digits as in an experiment file."""
 
     def uniform(self, low, high, digits=15):
         return round(super().uniform(low, high), digits)
@@ -56,7 +56,7 @@ def _beam_keys(lamp):
 
 
 def _draw_panel(draw):
-    """Keys of a panel's layout, and where its lamps stand about its centre."""
+    """Keys of a panel's layout, and the positions of its lamps relative to its centre."""
     layout = draw.below(4)
     if layout == 0:
         columns, rows = 2 + draw.below(4), 2 + draw.below(3)
@@ -91,7 +91,7 @@ def _draw_panel(draw):
 
 
 def _draw_side_lamps(draw, radius_m):
-    """Three to five single lamps that light the plate from its sides."""
+    """Three to five single lamps that light the plate from the sides."""
     lamps, sources = [], []
     count = 3 + draw.below(3)
     for k in range(count):
@@ -116,7 +116,7 @@ def _draw_side_lamps(draw, radius_m):
 
 
 def _draw_lamps(draw):
-    """Lamps, and their tables [[source]]: a panel above the plate or single lamps beside it."""
+    """Lamps and their tables [[source]]: a panel above the plate, or single lamps beside it."""
     radius_m = round(0.0005 * round(draw.uniform(0.005, 0.014) / 0.0005), 4)
     if draw.chance(0.15):
         return _draw_side_lamps(draw, radius_m)
@@ -141,7 +141,7 @@ def _draw_lamps(draw):
 
 
 def _draw_circuit(draw, kinds):
-    """The array, and the edge of its square cells."""
+    """The array, and the edge length of its square cells."""
     columns, rows, strings = 3 + draw.below(4), 2 + draw.below(3), 1
     along_columns = draw.chance(0.7)
     if "string_open" in kinds or draw.chance(0.15):
@@ -154,7 +154,7 @@ def _draw_circuit(draw, kinds):
     if kinds & {"bypass_shorted", "tracker_trapped"} or draw.chance(0.8):
         bypass_every = line if line < in_string else max(1, in_string // 2)
     edge_m = draw.uniform(0.04, 0.058, 3)
-    # Numbers are stated for 25 cm²; a larger cell is several of these beside one another.
+    # Numbers are stated for 25 cm²; a larger cell corresponds to several of these in parallel.
     size = edge_m**2 / REFERENCE_AREA_M2
     cell = Cell(
         saturation_A=size * draw.uniform(0.8, 1.8, 2) * 1e-11,
@@ -195,7 +195,7 @@ def _draw_wall(draw, plate):
 
 
 def _scan(world, attitudes, side, is_first):
-    """A photodiode over the plate, side by side points at each (tilt, heading)."""
+    """A scan of a photodiode over the plate with side × side points at each (tilt, heading)."""
     plate = world.room.plate
     u = np.linspace(plate.u_low_m + EDGE_M, plate.u_high_m - EDGE_M, side).round(5)
     v = np.linspace(plate.v_low_m + EDGE_M, plate.v_high_m - EDGE_M, side).round(5)
@@ -207,7 +207,7 @@ def _scan(world, attitudes, side, is_first):
 
 
 def _sweep(world, conditions, points, is_first):
-    """Curves at each (tilt, heading, temperature) from 0 V to a little beyond the open circuit."""
+    """Curves at each (tilt, heading, temperature) from 0 V to slightly above the open-circuit voltage."""
     voltages = []
     for tilt, heading, kelvin in conditions:
         attitude = Rotation.from_quat(np.roll(quaternion_at(tilt, heading), -1)).as_matrix()
@@ -228,7 +228,7 @@ def _sweep(world, conditions, points, is_first):
 
 
 def _run(draw, duration_s, is_first):
-    """A platform that swings and turns slowly and warms up, read every second."""
+    """A platform that swings, rotates slowly and warms up, with a reading every second."""
     wide, yaw = draw.uniform(0.04, 0.14), draw.uniform(0.1, 0.6)
     base_K, warm_K = draw.uniform(293.0, 303.0), draw.uniform(0.0, 8.0)
     rates = [2.0 * math.pi / draw.uniform(30.0, 140.0) for _ in range(6)]
@@ -245,7 +245,8 @@ def _run(draw, duration_s, is_first):
 
 
 def _draw_recordings(draw, world, kinds):
-    """Recordings in which all kinds can show, and as many held out: {"scan1": Rows, "scan2": Rows, …}."""
+    """Recordings in which all kinds can be visible, and an equal number of held-out ones: {"scan1": Rows, "scan2":
+    Rows, …}."""
     no_run = kinds & NO_RUN_KINDS or world.room.walls
     if kinds & RUN_KINDS or (not no_run and draw.chance(0.18)):
         duration_s = 300.0 + 100.0 * draw.below(5)
@@ -256,7 +257,7 @@ def _draw_recordings(draw, world, kinds):
     attitudes = [(0.0, 0.0)]
     if "interreflection" in kinds or draw.chance(0.4):
         attitudes.append((draw.uniform(6.0, 20.0, 0), draw.uniform(0.0, 360.0, 0)))
-    if "angular_response" in kinds or draw.chance(0.15):  # glass shows at a slant alone
+    if "angular_response" in kinds or draw.chance(0.15):  # glass has an effect only at oblique incidence
         attitudes.append((25.0, draw.uniform(0.0, 360.0, 0)))
     recordings = {}
     if has_scan:
@@ -273,8 +274,7 @@ def _draw_recordings(draw, world, kinds):
 
 
 def draw_setting(draw, kinds):
-    """A nominal world, its tables [[source]], its noise and its recordings, in which effects of
-    these kinds can act."""
+    """A nominal world, its tables [[source]], its noise and its recordings, in which effects of these kinds can act."""
     kinds = set(kinds)
     circuit, edge_m = _draw_circuit(draw, kinds)
     u_low = round(-0.5 * edge_m * circuit.columns + draw.uniform(-0.015, 0.015), 4)

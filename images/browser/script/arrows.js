@@ -1,4 +1,5 @@
-// Vectors at the body's origin: a force as a straight arrow, a torque and a turn with a ring about it.
+// Vectors at the body's origin: a force as a straight arrow, torques and rotations with a ring
+// around it.
 
 import {
   ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Quaternion, TorusGeometry, Vector3,
@@ -9,7 +10,7 @@ const up = new Vector3(0, 0, 1);
 const colourOf = { force: palette.vermilion, torque: palette.purple, turn: palette.vermilion };
 const laterColours = [palette.blue, palette.purple];
 
-// Along z, one long; a cylinder of three.js stands along y.
+// Along z with length one; cylinders of three.js are along y.
 function straight(material) {
   const group = new Group();
   const shaft = new Mesh(new CylinderGeometry(0.018, 0.018, 0.84, 16), material);
@@ -22,14 +23,14 @@ function straight(material) {
   return group;
 }
 
-// Three quarters of a ring about z with a head, right-handed.
+// Three quarters of a ring around z with an arrow head, right-handed.
 function ring(material) {
   const group = new Group();
   const radius = 0.2, arc = 1.5 * Math.PI;
   const body = new Mesh(new TorusGeometry(radius, 0.016, 12, 48, arc), material);
   const head = new Mesh(new ConeGeometry(0.05, 0.13, 24), material);
   head.position.set(radius * Math.cos(arc), radius * Math.sin(arc), 0);
-  // A cone points along y; the ring runs on along (−sin, cos).
+  // A cone points along y; the ring continues along (−sin, cos).
   head.rotation.z = arc;
   group.add(body, head);
   group.position.z = 0.5;
@@ -37,7 +38,7 @@ function ring(material) {
 }
 
 export class Arrow {
-  // `metres(value)`: how long it is drawn. `order`: how many of its kind come before it.
+  // `metres(value)`: drawn length. `order`: number of earlier arrows of the same kind.
   constructor(json, metres, order) {
     this.name = json.name;
     this.unit = json.unit;
@@ -57,7 +58,7 @@ export class Arrow {
   set(vector, error) {
     const direction = new Vector3(...vector);
     this.value = direction.length();
-    // The error of the component along it.
+    // Error of the component along the vector.
     this.error = this.value > 0
       ? Math.hypot(...vector.map((v, k) => v / this.value * error[k])) : Math.hypot(...error);
     this.isSignificant = this.value > 2 * this.error;

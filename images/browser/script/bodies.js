@@ -1,4 +1,4 @@
-// The body of the scene, and the surfaces of it on which light is measured.
+// The body of the scene, and its surfaces on which light is measured.
 
 import {
   BufferAttribute, BufferGeometry, Color, DataTexture, DoubleSide, EdgesGeometry, FrontSide, BackSide, Group,
@@ -8,7 +8,7 @@ import {
 import { ColourScale } from './colours.js';
 import { Grid, numbers } from './data.js';
 
-const largestWithEdges = 60000; // triangles; the lines of more would hide the body
+const largestWithEdges = 60000;  // triangles; with more, the edge lines would hide the body
 const creaseDeg = 25;
 
 function geometryOf(json) {
@@ -19,12 +19,12 @@ function geometryOf(json) {
   return geometry;
 }
 
-// All parts of the body: solid, or to be seen through in a colour.
+// All parts of the body: solid, or transparent in one colour.
 export function makeBody(parts, seeThrough) {
   const group = new Group();
   for (const part of parts) {
     const geometry = geometryOf(part);
-    // Without normals of vertices every triangle is shaded flat, as it is traced.
+    // Without vertex normals every triangle is shaded flat, as it is traced.
     const material = new MeshLambertMaterial({
       color: new Color().setRGB(...part.colour.map((byte) => byte / 255), SRGBColorSpace),
       flatShading: true, side: DoubleSide,
@@ -47,7 +47,7 @@ export function makeBody(parts, seeThrough) {
   return group;
 }
 
-// Where (u, v) lies in a triangle, as weights of its second and third corner; null outside of it.
+// Position of (u, v) in a triangle as weights of its second and third corner; null outside.
 function weights(a, b, c, p) {
   const ab = b.clone().sub(a), ac = c.clone().sub(a), ap = p.clone().sub(a);
   const twice = ab.cross(ac);
@@ -59,7 +59,7 @@ function weights(a, b, c, p) {
 
 // A surface with a map on it.
 class PaintedSurface {
-  // `maps`: those of the page by name.
+  // `maps`: maps of the page by name.
   constructor(json, maps, scale) {
     this.name = json.name;
     this.map = json.map ?? null;
@@ -71,7 +71,7 @@ class PaintedSurface {
       new Uint8Array(4 * this.grid.width * this.grid.height), this.grid.width, this.grid.height, RGBAFormat);
     this.texture.colorSpace = SRGBColorSpace;
     this.texture.magFilter = this.texture.minFilter = NearestFilter;
-    // The last block of a map whose sides were divided reaches beyond its edge.
+    // The last block of a reduced map extends beyond the map's edge.
     this.texture.repeat.set(this.grid.across / this.grid.width, this.grid.up / this.grid.height);
     this.mesh = new Mesh(geometryOf(json), new MeshBasicMaterial({
       map: this.texture, alphaTest: 0.5, toneMapped: false,
@@ -90,7 +90,7 @@ class PaintedSurface {
     this.texture.needsUpdate = true;
   }
 
-  // The place of (u, v) in the body frame; null where the map has no surface.
+  // Position of (u, v) in the body frame; null if the map has no surface there.
   placeOf(u, v) {
     const { position, uv } = this.mesh.geometry.attributes;
     const index = this.mesh.geometry.index.array;
@@ -108,7 +108,7 @@ class PaintedSurface {
   }
 }
 
-// Surfaces that share a colour scale and are shown together.
+// Surfaces that are shown together and share a colour scale.
 export class Painting {
   constructor(json, maps, colours) {
     this.title = json.title;

@@ -1,5 +1,5 @@
-// Colour maps, as the program's pictures have them, and the palette of curves and arrows.
-// The palette is that of M. Okabe and K. Ito, "Color Universal Design" (2008).
+// Colour maps equal to those of the program's pictures, and the palette of curves and arrows.
+// Source of the palette: M. Okabe and K. Ito, "Color Universal Design" (2008).
 
 import { element } from './elements.js';
 import { readable, tickLabels, ticks } from './format.js';
@@ -12,7 +12,7 @@ export const curveColours =
   [palette.blue, palette.vermilion, palette.green, palette.purple, palette.orange, palette.sky, palette.black];
 
 export class ColourScale {
-  // `hex`: 256 colours of six digits.
+  // `hex`: 256 colours of six digits each.
   constructor(hex, low, high) {
     this.low = low;
     this.high = high;
@@ -20,14 +20,14 @@ export class ColourScale {
     for (let i = 0; i < this.bytes.length; ++i) this.bytes[i] = parseInt(hex.substr(2 * i, 2), 16);
   }
 
-  // Where the three bytes of a value begin in `bytes`; −1 for no value.
+  // Index in `bytes` of the three bytes of a value; −1 for NaN.
   at(value) {
     if (Number.isNaN(value)) return -1;
     const fraction = (value - this.low) / (this.high - this.low);
     return 3 * Math.min(255, Math.max(0, Math.floor(256 * fraction)));
   }
 
-  // Values as red, green, blue and opacity, row by row; what has no value is transparent.
+  // Values as red, green, blue and opacity, row by row; NaN is transparent.
   pixels(values) {
     const rgba = new Uint8ClampedArray(4 * values.length);
     for (let i = 0; i < values.length; ++i) {
@@ -40,7 +40,7 @@ export class ColourScale {
   }
 }
 
-// An upright bar with numbers and unit; `mark(value)` shows where a value lies, `mark(null)` none.
+// A vertical bar with numbers and unit; `mark(value)` marks a value, `mark(null)` removes the mark.
 export function colourBar(scale, unit) {
   const canvas = element('canvas', { width: 1, height: 256 });
   const context = canvas.getContext('2d');

@@ -1,4 +1,4 @@
-// Curves over one axis, in one pair of axes or several stacked ones; values under the pointer.
+// Curves over one axis, in one or several stacked charts; values under the pointer.
 
 import { curveColours, palette } from './colours.js';
 import { numbers } from './data.js';
@@ -7,7 +7,7 @@ import { estimate, readable, tickLabels, ticks } from './format.js';
 
 const width = 640, left = 78, right = 22, gap = 14, foot = 44;
 
-// The colour of a curve, and dashes once all colours are taken.
+// Colour of a curve; dashed if all colours are used.
 function lookOf(json, order) {
   const repeats = json.style === 'line' && !palette[json.colour] && order >= curveColours.length;
   return {
@@ -23,7 +23,8 @@ function readCurve(json, order) {
   };
 }
 
-// The lowest and highest finite value; the central 99.6 % where single ones would flatten the rest.
+// Lowest and highest finite value. `robust`: of the central 99.6 %, so that outliers do not flatten
+// the rest.
 function range(arrays, log, robust) {
   const finite = [];
   for (const array of arrays) for (const v of array) if (Number.isFinite(v) && (!log || v > 0)) finite.push(v);
@@ -66,7 +67,7 @@ class Scale {
 
 const rounded = (number) => number.toFixed(1);
 
-// Points that can be drawn, in runs without gaps.
+// Drawable points, in runs without gaps.
 function runs(curve, x, y) {
   const all = [];
   let run = [];
@@ -117,7 +118,7 @@ function drawCurve(curve, x, y) {
   return marks;
 }
 
-// The point of a curve nearest to x; null where none is.
+// Index of the point of a curve nearest to x; null if there is none.
 function nearest(curve, x) {
   let best = -1, least = Infinity;
   for (let i = 0; i < curve.x.length; ++i) {
@@ -231,7 +232,7 @@ export class Chart {
     this.at(this.x.value(Math.min(Math.max(this.x.place(from) + step * (width - left - right) / 100, left), width - right)));
   }
 
-  // Reads all curves at x; null: none.
+  // Shows the values of all curves at x; null: none.
   at(x) {
     this.read = x;
     const inside = x !== null && this.x.place(x) >= left - 0.5 && this.x.place(x) <= width - right + 0.5;
@@ -254,7 +255,7 @@ export class Chart {
       }));
   }
 
-  // The line of the slider.
+  // Moves the line of the slider.
   follow(values) {
     const { cursor } = this.json;
     if (!cursor) return;

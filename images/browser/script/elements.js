@@ -1,4 +1,4 @@
-// Elements of the page. Texts become text nodes and never markup, whatever they hold.
+// Elements of the page. Texts become text nodes and never markup.
 
 const svgSpace = 'http://www.w3.org/2000/svg';
 
@@ -27,7 +27,7 @@ export function section(title, ...children) {
   return element('section', { 'aria-labelledby': id }, element('h2', { id }, title), ...children);
 }
 
-// A labelled list to choose from; `choose` gets the index.
+// A labelled selection list; `choose` is called with the index.
 export function choice(label, names, choose, chosen = 0) {
   const select = element('select', {
     'aria-label': label,

@@ -1,4 +1,4 @@
-// Numbers and dates as people read them, by the rules of the program's own output.
+// Numbers and dates as text, by the rules of the program's own output.
 
 const superscripts = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 
@@ -9,12 +9,12 @@ function powerOfTen(exponent) {
 
 const trueMinus = (text) => text.replace('-', '−');
 
-// The exponent of the leading digit, after rounding to `digits`.
+// Exponent of the leading digit, after rounding to `digits`.
 function magnitude(value, digits = 6) {
   return Number(value.toExponential(digits - 1).split('e')[1]);
 }
 
-// `digits` significant ones; powers of ten outside of [1e-3, 1e6).
+// A number with `digits` significant digits; with a power of ten outside [1e-3, 1e6).
 export function readable(value, digits = 4) {
   if (value === null || Number.isNaN(value)) return '–';
   if (!Number.isFinite(value)) return value > 0 ? '∞' : '−∞';
@@ -26,7 +26,7 @@ export function readable(value, digits = 4) {
   return trueMinus((value / 10 ** exponent).toFixed(digits - 1)) + '×' + powerOfTen(exponent);
 }
 
-// Six digits without zeros at the end, for exact numbers.
+// An exact number: six digits without trailing zeros.
 function exact(value) {
   if (value === null || !Number.isFinite(value)) return readable(value);
   if (value === 0) return '0';
@@ -36,7 +36,7 @@ function exact(value) {
   return trueMinus(digits) + '×' + powerOfTen(exponent);
 }
 
-// "79.112 ± 0.044": two digits of the error decide how many of the value mean something.
+// "79.112 ± 0.044": two digits of the error determine the digits of the value.
 export function estimate(value, error) {
   if (error === null) return readable(value) + ' (undetermined)';
   if (!(error > 0) || value === null) return exact(value);
@@ -54,8 +54,9 @@ export function estimate(value, error) {
 
 export const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
 
-// Round numbers within [low, high], at most `most` of them, and how many decimals they need.
-// P. Heckbert, "Nice numbers for graph labels", Graphics Gems (1990). Of angles in degrees, parts of a turn.
+// Round numbers within [low, high], at most `most`, and the number of decimals they need. Angles in
+// degrees use fractions of a turn. Source: P. Heckbert, "Nice numbers for graph labels", Graphics
+// Gems (1990).
 export function ticks(low, high, most, unit = '') {
   const raw = (high - low) / Math.max(1, most);
   const power = 10 ** Math.floor(Math.log10(raw));
@@ -66,7 +67,7 @@ export function ticks(low, high, most, unit = '') {
   return { values, step };
 }
 
-// Labels of ticks, with a common power of ten where plain numbers are hard to read.
+// Labels of ticks, with a common power of ten if plain numbers are hard to read.
 export function tickLabels(values, step) {
   const largest = Math.max(...values.map(Math.abs), step);
   const exponent = Math.floor(Math.log10(largest) + 1e-9);

@@ -1,4 +1,4 @@
-// Lamps and the rays that leave them, in the laboratory.
+// Lamps and their rays, in the laboratory.
 
 import {
   BufferAttribute, BufferGeometry, CircleGeometry, CylinderGeometry, DoubleSide, Group,
@@ -8,7 +8,7 @@ import {
 
 const up = new Vector3(0, 0, 1);
 
-// Every lamp as a short housing with its opening; a point as a small one.
+// Every lamp as a short housing with its opening; a point source as a small one.
 export function makeLamps(lamps, radius) {
   const group = new Group();
   const near = lamps.filter((lamp) => !lamp.far);
@@ -34,7 +34,7 @@ export function makeLamps(lamps, radius) {
   return group;
 }
 
-// Rays as thin lines; `set` takes their ends, six numbers each.
+// Rays as thin lines; `set` receives their ends, six numbers per ray.
 export class Rays {
   constructor() {
     this.lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial({

@@ -1,4 +1,4 @@
-// The page: reads what the program wrote into it and puts its sections together.
+// The page: reads the data in it and assembles its sections.
 
 import { Chart } from './curves.js';
 import { read } from './data.js';
@@ -19,7 +19,7 @@ function header(run) {
 
 const bodies = (charts) => element('div', { class: 'charts' }, charts.map((chart) => chart.body));
 
-// Curves that carry the line of the slider; of many the first, and the others to be unfolded.
+// Section of the curves with the line of the slider: the first few directly, the others folded.
 function alongTheSlider(stage, charts) {
   // Only the curves of the selected recording are visible.
   const atOnce = charts.some((chart) => chart.json.cursor.only_at) ? charts.length : stage?.bodies.length > 1 ? 6 : 4;
@@ -59,7 +59,7 @@ function build(run) {
   if (run.notes.length > 0) {
     main.append(section('Notes', element('ul', {}, run.notes.map((note) => element('li', {}, note)))));
   }
-  // Beside the text of a report, which goes on below the scene.
+  // The text of a report continues below the scene; the provenance follows it.
   main.closest('main').append(element('footer', {}, section('What made this page', provenance(run.provenance, run.command))));
 }
 

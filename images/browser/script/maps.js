@@ -1,18 +1,18 @@
-// Maps as pictures with axes and a colour bar; every bin can be read by pointer and keys.
+// Maps as pictures with axes and a colour bar; pointer and keys show the value of a bin.
 
 import { ColourScale, colourBar } from './colours.js';
 import { Grid, numbers } from './data.js';
 import { choice, element } from './elements.js';
 import { estimate, readable, tickLabels, ticks, withUnit } from './format.js';
 
-// A map of the page with its numbers unpacked.
+// A map of the page with decoded numbers.
 export function readMap(json) {
   const values = numbers(json.value);
   const grid = new Grid(json, values, json.error ? numbers(json.error) : null);
   return { ...json, grid };
 }
 
-// The name and the unit of a label such as "body x [m]".
+// Name and unit of a label such as "body x [m]".
 function parts(label) {
   const match = /^(.*?)\s*\[(.*)\]$/.exec(label);
   return match ? { name: match[1], unit: match[2] } : { name: label, unit: '' };
@@ -24,7 +24,7 @@ function picture(map, scale) {
   const rgba = scale.pixels(values);
   const image = canvas.getContext('2d').createImageData(width, height);
   const line = 4 * width;
-  // Rows of the map rise, those of a canvas run downwards.
+  // Rows of the map run upwards, rows of a canvas downwards.
   for (let y = 0; y < height; ++y) image.data.set(rgba.subarray(line * y, line * (y + 1)), line * (height - 1 - y));
   canvas.getContext('2d').putImageData(image, 0, 0);
   return canvas;
@@ -92,7 +92,7 @@ export class MapSection {
     this.at({ x, y, index: y * grid.width + x });
   }
 
-  // Reads a bin; null: none.
+  // Shows the value of a bin; null: none.
   at(bin, tell = true) {
     const { map } = this;
     this.bin = bin;
@@ -118,7 +118,7 @@ export class MapSection {
     this.bar.mark(value);
   }
 
-  // A bin of the map of this name was pointed at elsewhere.
+  // Shows the bin of the map of this name at which the pointer is elsewhere on the page.
   follow(name, bin) {
     if (this.map.name === name) this.at(bin, false);
   }

@@ -1,4 +1,4 @@
-// Sliders over the states of the stage, and playing them where an axis is time.
+// Sliders over the states of the stage, and playback if an axis is time.
 
 import { element } from './elements.js';
 import { readable, withUnit } from './format.js';
@@ -6,7 +6,8 @@ import { readable, withUnit } from './format.js';
 const steps = 2000;         // of a slider over time
 const secondsToPlay = 20;   // from end to end
 
-// The state at or before a value and how far the next one is, of a rising axis.
+// The last state at or before a value of a rising axis, and the fraction of the way to the next
+// one.
 function between(values, value) {
   let low = 0, high = values.length - 1;
   while (high - low > 1) {
@@ -19,7 +20,8 @@ function between(values, value) {
 }
 
 export class Player {
-  // `show(from, to, fraction, at)`: two states, how far between them, and the values of the axes.
+  // `show(from, to, fraction, at)`: two states, the fraction between them, and the values of the
+  // axes.
   constructor(axes, show) {
     this.axes = axes;
     this.show = show;
@@ -54,7 +56,7 @@ export class Player {
     this.update();
   }
 
-  // Moves one axis; its slider follows.
+  // Moves one axis and its slider.
   move(i, value) {
     this.at[i] = value;
     const { values, plays } = this.axes[i];

@@ -1,4 +1,4 @@
-// Where the power went: a waterfall. Each loss hangs from the remaining power before it.
+// The power balance as a waterfall chart. Each loss begins at the power that remains before it.
 
 import { palette } from './colours.js';
 import { element } from './elements.js';

@@ -1,4 +1,4 @@
-// The section around the stage: what to show, the sliders, labels and readings.
+// The section around the stage: selection of the content, sliders, labels and values.
 
 import { colourBar, palette } from './colours.js';
 import { numbers } from './data.js';
@@ -35,7 +35,7 @@ function triad(view) {
 }
 
 export class StageSection {
-  // `maps`: those of the page by name; `link`: what the page does when a bin is under the pointer.
+  // `maps`: maps of the page by name; `link`: called when a bin is under the pointer.
   constructor(json, maps, colours) {
     this.stage = unpack(json);
     this.canvas = element('canvas', {
@@ -118,7 +118,7 @@ export class StageSection {
         if (label.hidden) return;
         const [x, tipY] = view.onScreen(arrow.tip);
         const width = label.offsetWidth, height = label.offsetHeight;
-        // Below those that it would cover.
+        // Below the labels that it would cover.
         const y = placed.reduce((free, other) => (
           x < other.x + other.width && other.x < x + width && Math.abs(free - other.y) < height ? other.y + height : free
         ), tipY);
@@ -164,7 +164,7 @@ export class StageSection {
     this.scaleBar?.mark(null);
   }
 
-  // A bin of a map of the page is under the pointer: it is shown on the body.
+  // Marks on the body the bin of a page map that is under the pointer.
   markBin(map, bin) {
     const surface = this.view?.painting?.surfaces.find((s) => s.map === map) ?? null;
     if (!surface || !bin) {

@@ -1,4 +1,4 @@
-// Figures, tables and what made them.
+// Figures, tables and provenance.
 
 import { element } from './elements.js';
 import { estimate, readable } from './format.js';

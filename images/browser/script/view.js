@@ -1,4 +1,4 @@
-// The stage in three dimensions: what is on it, the camera, what lies under the pointer.
+// The stage in three dimensions: its content, the camera, and the object under the pointer.
 
 import {
   Box3, Color, DirectionalLight, Group, HemisphereLight, MOUSE, Mesh, MeshBasicMaterial, PerspectiveCamera, Quaternion,
@@ -10,16 +10,16 @@ import { palette } from './colours.js';
 import { Painting, makeBody } from './bodies.js';
 import { Rays, makeLamps } from './light.js';
 
-// three.js takes y as upwards; this turn of spherical coordinates makes it z.
+// In three.js y is up; this rotation of spherical coordinates makes z up.
 const upright = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(0, 1, 0));
 
-// Colours of the bodies in order; the first is solid. In a diagnosis: nominal, improved.
+// Colours of the bodies in order; the first body is solid. In a diagnosis: nominal, improved.
 export const bodyColours = [palette.grey, palette.vermilion, palette.blue];
 
-const widest = 4 / 3;  // width over height for which the field of view is meant; wider ones show more
+const widest = 4 / 3;  // ratio of width to height up to which the field of view is across the width
 
 export class StageView {
-  // Throws where the browser has no WebGL.
+  // Throws an error if the browser has no WebGL.
   constructor(canvas, stage, maps, colours) {
     this.canvas = canvas;
     this.stage = stage;
@@ -62,7 +62,7 @@ export class StageView {
     this.scene.add(this.camera);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
-    // The page scrolls with the wheel; the scene takes it once it has the focus.
+    // The wheel scrolls the page; it zooms the scene only while the scene has the focus.
     this.controls.enableZoom = false;
     this.canvas.addEventListener('focus', () => { this.controls.enableZoom = true; });
     this.canvas.addEventListener('blur', () => { this.controls.enableZoom = false; });
@@ -73,14 +73,14 @@ export class StageView {
     this.far = this.near;
   }
 
-  // From where body and lamps are seen together, in the direction of the experiment's own camera.
+  // Viewpoint for body and lamps together, in the direction of the experiment's camera.
   framing(aspect) {
     const { lamps, radius } = this.stage;
     const near = lamps.filter((lamp) => !lamp.far).map((lamp) => new Vector3(...lamp.position))
       .filter((at) => at.length() < 10 * radius);
     if (near.every((at) => at.length() < 1.5 * radius)) return this.near;
     const back = this.near.position.clone().sub(this.near.target).normalize();
-    // Less from above than the body alone: what stands over it would hide it.
+    // Lower than for the body alone, because lamps above the body would hide it.
     back.z = Math.min(back.z, 0.35);
     back.normalize();
     const right = new Vector3(0, 0, 1).cross(back).normalize(), up = back.clone().cross(right);
@@ -95,7 +95,8 @@ export class StageView {
     return { position: target.clone().addScaledVector(back, distance), target };
   }
 
-  // Length of a drawn vector: the longest of all states is as long as the body, or a separate scale.
+  // Drawn length of a vector: the longest of all states is as long as the body, unless the vector
+  // states a scale.
   lengthOf(json, which) {
     if (json.m_per_unit > 0) return (value) => value * json.m_per_unit;
     const { arrow } = this.stage.states;
@@ -113,7 +114,7 @@ export class StageView {
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
-    // The field of view is across the width; a tall picture keeps what a square one shows.
+    // The field of view is across the width. Pictures wider than `widest` show more on both sides.
     const half = Math.tan(this.field / 2 * Math.PI / 180) / Math.min(this.camera.aspect, widest);
     this.camera.fov = 2 * Math.atan(half) * 180 / Math.PI;
     this.camera.updateProjectionMatrix();
@@ -138,7 +139,7 @@ export class StageView {
     this.draw();
   }
 
-  // Looks along a direction, from as far as now.
+  // Looks along a direction, from the present distance.
   lookFrom(direction) {
     const distance = this.camera.position.distanceTo(this.controls.target);
     this.camera.position.copy(this.controls.target).addScaledVector(new Vector3(...direction).normalize(), distance);
@@ -177,7 +178,7 @@ export class StageView {
     this.draw();
   }
 
-  // Between states `from` and `to`; `fraction` 0 is `from`.
+  // Shows the state between `from` and `to`; `fraction` 0 is `from`.
   show(from, to, fraction) {
     const { states } = this.stage;
     const nearest = fraction < 0.5 ? from : to;
@@ -200,7 +201,7 @@ export class StageView {
     this.draw();
   }
 
-  // The map bin at a place of the page: surface, bin and its place in the body.
+  // The map bin at a position of the page: surface, bin and its position on the body.
   pick(clientX, clientY) {
     if (!this.painting) return null;
     const box = this.canvas.getBoundingClientRect();
@@ -213,7 +214,7 @@ export class StageView {
     return { surface, bin: surface.grid.binAt(hit.uv.x, hit.uv.y) };
   }
 
-  // Shows a place of a surface; null: none.
+  // Marks a position on a surface; null: none.
   mark(surface, u, v) {
     const place = surface?.placeOf(u, v) ?? null;
     this.marker.visible = place !== null;
@@ -221,7 +222,7 @@ export class StageView {
     this.draw();
   }
 
-  // The directions of the lab's axes on the screen, x right and y down, and towards the viewer.
+  // Directions of the lab's axes on the screen: x right, y down, z towards the viewer.
   axes() {
     const inverse = this.camera.quaternion.clone().invert();
     return [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => {
@@ -230,13 +231,13 @@ export class StageView {
     });
   }
 
-  // Where a point of the first body is on the canvas, in its own pixels.
+  // Position of a point of the first body on the canvas, in canvas pixels.
   onScreen(point) {
     const at = point.clone().applyQuaternion(this.bodies[0].quaternion).project(this.camera);
     return [(at.x + 1) / 2 * this.canvas.clientWidth, (1 - at.y) / 2 * this.canvas.clientHeight];
   }
 
-  // Once before the next picture, however often it is asked for.
+  // Draws once before the next frame, however many times it is called.
   draw() {
     if (this.waiting) return;
     this.waiting = true;

@@ -24,7 +24,7 @@ Facet facet_of(const SurfaceFace& face) {
   return facet;
 }
 
-// About the middle of the box that holds the facets.
+// Ball about the centre of the box that contains the facets.
 Ball ball_about(std::span<const Facet> facets) {
   if (facets.empty()) return {Vec3::Zero(), 0.0};
   Vec3 low = facets[0].corner_m[0], high = low;
@@ -56,11 +56,13 @@ Facets::Facets(const Scene& scene) {
   find_free(ball_about(facets_).radius_m);
 }
 
-// Finds the facets that nothing can shade. All pairs of a facet and a corner are tested up to a
-// limit; beyond it, only those of the largest facets.
+// Finds the facets that nothing can shade. Compares facets with the corners of all others, for up
+// to 2e8 pairs; beyond this limit only the largest facets are compared.
 void Facets::find_free(double scene_radius_m) {
   constexpr size_t most_pairs = 200'000'000;
-  constexpr double rounding = 1e-6;  // of the scene: in the plane, to the precision of rays
+  // Fraction of the scene's radius: such corners are in the facet's plane, to the precision of
+  // rays.
+  constexpr double rounding = 1e-6;
   std::vector<size_t> order(facets_.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::stable_sort(
@@ -85,7 +87,8 @@ void Facets::find_free(double scene_radius_m) {
 
 namespace {
 
-// The corners of all faces, three by three; those at the same position have the same number.
+// Indices of the corners of all faces, three per face; corners at the same position have the same
+// index.
 std::vector<uint32_t> places_of(std::span<const SurfaceFace> faces) {
   std::vector<Vec3> corners_m;
   for (const SurfaceFace& face : faces) {
@@ -94,7 +97,7 @@ std::vector<uint32_t> places_of(std::span<const SurfaceFace> faces) {
   return welded(corners_m);
 }
 
-// Along an edge from its lower place to its higher, or back.
+// An edge with its direction: from the lower to the higher index, or back.
 struct DirectedEdge {
   uint32_t low, high;
   bool forward;
@@ -104,7 +107,7 @@ std::vector<DirectedEdge> edges_of(const std::vector<uint32_t>& places) {
   std::vector<DirectedEdge> edges;
   for (size_t first = 0; first < places.size(); first += 3) {
     const auto p = std::span(places).subspan(first, 3);
-    // Two of its corners are one: it has no area, and the others meet without it.
+    // Two corners are identical: the face has no area, and its neighbours share the remaining edge.
     if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;
     for (size_t k = 0; k < 3; ++k) {
       const uint32_t a = p[k], b = p[(k + 1) % 3];
@@ -117,7 +120,7 @@ std::vector<DirectedEdge> edges_of(const std::vector<uint32_t>& places) {
   return edges;
 }
 
-// Every edge of two triangles that run along it in opposite ways.
+// Whether every edge belongs to exactly two triangles that traverse it in opposite directions.
 bool is_without_gap(const std::vector<DirectedEdge>& edges) {
   if (edges.empty() || edges.size() % 2 != 0) return false;
   for (size_t i = 0; i < edges.size(); i += 2) {
@@ -151,9 +154,9 @@ std::optional<bool> fronts_look_inwards(std::span<const SurfaceFace> faces) {
   }
   bool inwards = false, outwards = false;
   for (const auto& [body, size] : sizes) {
-    // A fold without area, whose corners are one with nothing else's.
+    // A fold without area that shares no corner with other bodies.
     if (size.area_m2 == 0.0) continue;
-    // A volume within rounding errors has no inner side.
+    // The inner side of a volume within rounding errors is undefined.
     constexpr double rounding = 1e-12;
     if (std::abs(size.volume_m3) <= rounding * size.area_m2 * size.reach_m) return std::nullopt;
     (size.volume_m3 < 0.0 ? inwards : outwards) = true;

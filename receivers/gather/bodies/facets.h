@@ -1,4 +1,4 @@
-// The triangles of a body as light meets them.
+// Triangles of a body with the data that direct light needs.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace photorque {
 
-// A triangle of positive area. Body frame.
+// A triangle of positive area in the body frame.
 struct Facet {
   TriangleCorners corner_m;
   Vec3 normal;  // of the front
@@ -21,8 +21,8 @@ struct Facet {
   Ball ball;  // about its centroid
   uint32_t instance = 0;
   uint32_t triangle = 0;
-  // No part of the scene lies above the back [0] or the front [1]: all light on that side is
-  // not shaded.
+  // Whether no part of the scene lies above the back [0] or the front [1], so that nothing can
+  // shade this side.
   std::array<bool, 2> free = {false, false};
 };
 
@@ -31,17 +31,19 @@ class Facets {
  public:
   explicit Facets(const Scene& scene);
 
+  // Facets of an instance.
   std::span<const Facet> of(uint32_t instance) const {
     return std::span(facets_).subspan(first_[instance], first_[instance + 1] - first_[instance]);
   }
   std::span<const Facet> all() const { return facets_; }
   uint32_t instances() const { return static_cast<uint32_t>(balls_.size()); }
-  // The place in all() of each triangle of each instance; of one without area, of its neighbour.
+  // Index in all() of each triangle of each instance. A triangle without area has the index of a
+  // neighbour.
   const std::vector<std::vector<uint32_t>>& numbers() const { return numbers_; }
-  // Holds an instance.
+  // Ball that contains an instance.
   const Ball& ball_of(uint32_t instance) const { return balls_[instance]; }
   size_t count() const { return facets_.size(); }
-  // fronts_look_inwards() of an instance.
+  // Result of fronts_look_inwards() for an instance.
   std::optional<bool> inward(uint32_t instance) const { return inward_[instance]; }
 
  private:
@@ -54,12 +56,11 @@ class Facets {
   std::vector<std::optional<bool>> inward_;
 };
 
-// Which side of a mesh no light from outside can reach.
+// Sides of a mesh that light from outside cannot reach.
 
-// Whether the front sides of a closed mesh face inwards. Empty if the mesh has no inside, or not
-// always on the same side of its faces: an edge does not belong to two triangles with opposite
-// orientation, some of several bodies are inside out, or the volume is zero. Corners at the same
-// place are one.
+// Whether the front sides of a closed mesh face inwards. Empty if the inner side is undefined: an
+// edge does not belong to exactly two triangles with consistent orientation, some of several bodies
+// are inside out, or the volume is zero. Corners at the same position count as one.
 std::optional<bool> fronts_look_inwards(std::span<const SurfaceFace> faces);
 
 }  // namespace photorque

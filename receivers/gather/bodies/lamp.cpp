@@ -9,7 +9,8 @@
 namespace photorque {
 namespace {
 
-// Halves the sides of a triangle until the rule of seven points agrees with itself.
+// Integrates the light of a lamp over a triangle. Halves its sides until the seven-point rules on
+// the triangle and on its quarters agree.
 class FacetQuadrature {
  public:
   FacetQuadrature(const BodyLamp& lamp, const FirstContact& contact, const Vec3& normal,
@@ -31,7 +32,8 @@ class FacetQuadrature {
  private:
   static constexpr double tolerance = 2e-7;  // of all momentum of the beam, for each piece
   static constexpr double tiny = 0.1;        // of the length over which the light changes
-  static constexpr double smooth = 1.0;      // likewise: pieces that are accurate enough
+  // Fraction of the same length: pieces below this size are accurate enough.
+  static constexpr double smooth = 1.0;
   static constexpr int depth = 8;
 
   struct Piece {
@@ -60,15 +62,15 @@ class FacetQuadrature {
     return wrench_of(force, at_m - about_m_);
   }
   WrenchSum mean_of(const Piece& piece) const {
-    // No structured binding: Clang 14 captures none.
+    // Not a structured binding: Clang 14 cannot capture one.
     const Vec3& origin = piece.corner_m[0];
     const Vec3 edge1 = piece.corner_m[1] - origin, edge2 = piece.corner_m[2] - origin;
     return triangle_mean(
         [&](double s, double t) { return density(origin + s * edge1 + t * edge2); });
   }
 
-  // The difference of the rules of degree 5 and 1 is the curvature of the light; the remaining
-  // error is smaller by higher powers of the size.
+  // The difference of the rules of degree 5 and 1 measures the curvature of the light. The
+  // remaining error is smaller by higher powers of the size.
   BodyLamp::Open in_one(const Piece& piece, const Ball& ball) {
     const WrenchSum mean = mean_of(piece), middle = density(ball.centre_m);
     const double shrink = std::pow(ball.radius_m / lamp_.scale_m(ball), 2) * piece.area_m2;
@@ -76,7 +78,7 @@ class FacetQuadrature {
             shrink * (mean - middle).tail<3>().matrix().norm()};
   }
 
-  // Down to pieces over which the light changes little enough to be seen by a few points.
+  // Divides the piece until the light changes little enough over it for a few points.
   void descend(const Piece& piece, int level) {
     const Ball ball = piece.ball();
     if (lamp_.misses(ball)) return;
@@ -95,7 +97,8 @@ class FacetQuadrature {
       means[i] = lamp_.misses(quarters[i].ball()) ? WrenchSum::Zero().eval() : mean_of(quarters[i]);
       finer += 0.25 * means[i];
     }
-    // The difference of the two rules is used as the error of the finer one, which is smaller.
+    // The difference of the two rules is used as the error of the finer rule; the true error is
+    // smaller.
     const double force_N = piece.area_m2 * (finer - mean).head<3>().matrix().norm();
     const double torque_N_m = piece.area_m2 * (finer - mean).tail<3>().matrix().norm();
     const bool good = force_N <= force_tolerance_N_ && torque_N_m <= torque_tolerance_N_m_;
@@ -126,7 +129,8 @@ WrenchSum wrench_of(const Vec3& force_N, const Vec3& lever_m) {
 }
 
 void BodyLight::reach(double low_m, double high_m) {
-  constexpr double nearest = 0.05;  // of the farthest: light that near is asked for itself
+  // Fraction of the largest height: nearer light is computed without a table.
+  constexpr double nearest = 0.05;
   if (light_->parallel() || !(high_m > 0.0)) return;
   high_m_ = std::max(high_m_, high_m);
   low_m_ = std::min(low_m_, std::max(low_m, nearest * high_m_));
@@ -142,7 +146,7 @@ const MomentumTable* BodyLight::table_at(double height_m) const {
                               slabs_.size() - 1);
   Slab& one = *slabs_[index];
   std::call_once(one.made, [&] {
-    // A hair wider, for rounding of the index.
+    // The range is extended slightly because of the rounding of the index.
     const double from_m = low_m_ * std::pow(slab, static_cast<double>(index));
     one.table = MomentumTable::make(*light_, 0.9999 * from_m, 1.0001 * slab * from_m, 1);
   });
@@ -158,11 +162,11 @@ Exposure BodyLamp::exposure_of(const FacetSide& side) const {
   const Vec3 normal = side.normal();
   const double cosine = -normal.dot(body_from_emitter().direction(Vec3::UnitZ()));
   const double reach_sine = std::sin(std::min(light().reach_rad(), 0.5 * pi));
-  // Test with the directions of the rays.
+  // First test: directions of the rays.
   if (cosine <= -reach_sine) return Exposure::none;
   const bool all_directions = cosine > reach_sine && light().reach_rad() < 0.5 * pi;
   if (light().parallel()) return all_directions ? Exposure::whole : Exposure::partly;
-  // Test with the position of the aperture.
+  // Second test: position of the aperture.
   const Vec3 way = body_from_emitter().translation_m - side.facet->ball.centre_m;
   const double spread_m = light().radius_m() * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   const double height_m = normal.dot(way);

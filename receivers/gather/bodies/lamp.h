@@ -1,4 +1,4 @@
-// The light of one beam on the facets of a body. For the files of this folder only.
+// Light of one beam on the facets of a body. For the files of this folder only.
 #pragma once
 
 #include <cmath>
@@ -13,25 +13,26 @@
 
 namespace photorque {
 
-// Force and torque about a point, x, y, z each.
+// Force and torque about a point, x, y and z of each.
 using WrenchSum = Eigen::Array<double, 6, 1>;
 
+// Force and its torque about a point, for the lever arm from that point.
 WrenchSum wrench_of(const Vec3& force_N, const Vec3& lever_m);
 
-// An emitter's light, with tables of its momentum for heights above the aperture. They are made
-// when they are first asked for, each for a slab of heights.
+// Light of an emitter, with tables of its momentum per slab of heights above the aperture. A table
+// is computed when it is first needed.
 class BodyLight {
  public:
   explicit BodyLight(std::shared_ptr<const DiscLight> light) : light_(std::move(light)) {}
 
   const std::shared_ptr<const DiscLight>& light() const { return light_; }
-  // The body will be within these heights: before any table is asked for.
+  // Announces the range of heights [m] of the body. Call it before table_at().
   void reach(double low_m, double high_m);
-  // Null where there is none.
+  // Null if there is no table for this height.
   const MomentumTable* table_at(double height_m) const;
 
  private:
-  static constexpr double slab = 1.25;  // its ends' ratio
+  static constexpr double slab = 1.25;  // ratio of the heights of its ends
   struct Slab {
     std::once_flag made;
     std::optional<MomentumTable> table;
@@ -50,29 +51,29 @@ struct FacetSide {
   Vec3 normal() const { return front ? facet->normal : Vec3(-facet->normal); }
 };
 
-// Upper limit for the light of a beam on one side.
+// Upper limit of the light of a beam on one side.
 enum class Exposure {
   none,
   partly,  // some rays may come from behind
-  whole,   // every ray that meets the facet meets this side (all but 1e-9 of them)
+  whole,   // every ray that meets the facet meets this side (all but 1e-9 of the flux)
 };
 
 class BodyLamp : public PlacedLamp {
  public:
-  // `of` must outlive this.
+  // `of` must outlive this object.
   BodyLamp(const Beam& beam, const BodyLight& of, const RigidTransform& body_from_lab,
            const Bands& bands, double scene_diameter_m)
       : PlacedLamp(beam, of.light(), body_from_lab, bands, scene_diameter_m), table_(of) {}
 
-  // No part of the aperture is inside the ball.
+  // Whether no part of the aperture is inside the ball.
   bool outside(const Ball& ball) const;
   Exposure exposure_of(const FacetSide& side) const;
-  // About the power on a facet.
+  // Estimated power [W] on a facet.
   double typical_W(const FacetSide& side) const;
-  // Irradiance and flow of momentum without shadow at a point, body frame.
+  // Unshaded irradiance and momentum flow at a point, body frame.
   ArrivingLight arriving(const Vec3& at_m, const Vec3& normal) const;
-  // The wrench of all light on a plain side that every ray meets, as if nothing shaded it, about a
-  // point; and the errors of force and torque.
+  // Unshaded wrench about a point of the light on a plain side that every ray meets, with the
+  // errors of force and torque.
   struct Open {
     WrenchSum wrench;
     double force_error_N = 0.0, torque_error_N_m = 0.0;

@@ -60,7 +60,8 @@ OnwardLight::OnwardLight(const TraceableScene& scene,
 }
 
 void OnwardLight::follow(std::vector<OnwardRay>& rays, double cutoff, const OnwardSink& sink) {
-  constexpr int deepest = 1000;  // a cutoff ends all but light between perfect mirrors
+  // The cutoff ends all light earlier, except between perfect mirrors.
+  constexpr int deepest = 1000;
   std::vector<OnwardRay> next;
   std::vector<double> least_W, next_least_W;
   for (const OnwardRay& ray : rays) least_W.push_back(cutoff * total_W(ray.power_W));

@@ -16,30 +16,32 @@ struct OnwardRay {
   uint32_t owner;
 };
 
-// The actions where it lands. A side is a facet's back (2 · facet) or front (2 · facet + 1).
+// Callbacks for the points where rays land. A side is the back (2 · facet) or the front
+// (2 · facet + 1) of a facet.
 struct OnwardSink {
   // Receives the mean force and torque that a ray of this owner exerts on a surface.
   std::function<void(uint32_t owner, const WrenchSum& wrench)> push;
-  // Receives the light that Lambert's law scatters there.
+  // Receives the light that is scattered there by Lambert's law.
   std::function<void(uint32_t owner, size_t side, const Vec2& uv, const BandValues& power_W)>
       scatter;
 };
 
-// A shadow ray from a point on a surface along its normal, with this length.
+// A shadow ray of this length from a point on a surface along its normal.
 ShadowRay probe(const TraceableScene& scene, const Vec3& at_m, const Vec3& normal, double length_m);
 
-// Whether every surface goes by mirror, Lambert's law and straight passage alone.
+// Whether all surfaces only reflect as mirrors, scatter by Lambert's law and transmit without
+// change of direction.
 bool all_plain(const Scene& scene);
 
 class OnwardLight {
  public:
-  // `facet_of` numbers the triangles of each instance, see Facets::numbers(). Both must outlive
-  // this.
+  // `facet_of` maps the triangles of each instance to facets, see Facets::numbers(). Both
+  // references must outlive this object.
   OnwardLight(const TraceableScene& scene, const std::vector<std::vector<uint32_t>>& facet_of,
               const Vec3& about_m);
 
-  // Follows the rays and their further bounces until less than `cutoff` of a ray is left; leaves
-  // none.
+  // Follows the rays and their further bounces until less than the fraction `cutoff` of a ray's
+  // power remains; clears `rays`.
   void follow(std::vector<OnwardRay>& rays, double cutoff, const OnwardSink& sink);
   uint64_t rays() const { return traced_; }
 

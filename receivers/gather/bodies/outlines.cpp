@@ -9,8 +9,8 @@
 namespace photorque {
 namespace {
 
-// The ends of an edge in a fixed order, and its instance: corners of one mesh are placed alike, to
-// the last bit.
+// The instance of an edge and its ends in a fixed order. Corners of one mesh are transformed
+// identically, so that equal corners have equal bits.
 using EdgeKey = std::array<double, 7>;
 
 EdgeKey key_of(uint32_t instance, const Vec3& a, const Vec3& b) {
@@ -25,16 +25,16 @@ EdgeKey key_of(uint32_t instance, const Vec3& a, const Vec3& b) {
           second.z()};
 }
 
-// The lines at which other facets cut through a facet.
+// Lines at which other facets cut through a facet.
 std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double rounding_m) {
   std::vector<Line> lines;
   const auto add = [&](const Line& line) {
-    // Lines of neighbours are omitted: they meet the facet at a corner only.
+    // Omits the lines of neighbours, which meet the facet at a corner only.
     Screen screen(facet);
     screen.add(std::span(&line, 1), facet.normal, -facet.normal, rounding_m);
     if (!screen.traces().empty()) lines.push_back(line);
   };
-  std::map<EdgeKey, int> in_plane;  // which sides of it there are: above 1, below 2
+  std::map<EdgeKey, int> in_plane;  // sides on which the surface continues: 1 above, 2 below
   for (uint32_t instance = 0; instance < facets.instances(); ++instance) {
     const Ball& all = facets.ball_of(instance);
     if ((all.centre_m - facet.ball.centre_m).norm() > all.radius_m + facet.ball.radius_m) continue;
@@ -52,7 +52,7 @@ std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double 
         if (std::abs(height_m[i]) <= rounding_m) ends_m.push_back(other.corner_m[i]);
       }
       if (ends_m.size() == 3) continue;
-      // An edge in the plane is a cut if the surface goes on below it.
+      // An edge in the facet's plane is a cut if the surface continues below it.
       const bool on_edge = ends_m.size() == 2;
       for (size_t i = 0; i < 3 && ends_m.size() < 2; ++i) {
         const size_t j = (i + 1) % 3;
@@ -91,7 +91,7 @@ Outlines::Outlines(const Facets& facets) {
           continue;
         }
         Edge& edge = edges_[place->second];
-        // Neighbours that are turned alike run along their edge in opposite directions.
+        // Neighbours with the same orientation traverse their common edge in opposite directions.
         if (edge.facets == 1) edge.normal[1] = edge.line.from_m == a ? -facet.normal : facet.normal;
         ++edge.facets;
       }
@@ -136,7 +136,7 @@ int LineGrid::column(double x_m) const {
   return std::clamp(static_cast<int>((x_m - low_m_) * per_m_), 0, width - 1);
 }
 
-// Column by column, in the rows that the line has there.
+// Adds the line to its cells: in each column, to the rows that it crosses there.
 void LineGrid::add(uint32_t index) {
   const Line& line = lines_[index];
   Vec2 from(across_.dot(line.from_m), aside_.dot(line.from_m));
@@ -154,7 +154,7 @@ void LineGrid::add(uint32_t index) {
       one = height_at(low_m_ + c / per_m_);
       other = height_at(low_m_ + (c + 1) / per_m_);
     }
-    // A margin for rounding.
+    // Margin for rounding.
     const double margin = 1e-9 / per_m_;
     const int bottom = column(std::min(one, other) - margin);
     const int top = column(std::max(one, other) + margin);

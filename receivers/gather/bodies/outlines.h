@@ -1,4 +1,4 @@
-// The lines at which shadows in parallel light can end. For the files of this folder only.
+// Lines at which shadows in parallel light can end. For the files of this folder only.
 #pragma once
 
 #include <vector>
@@ -7,14 +7,14 @@
 
 namespace photorque {
 
-// The edges of all facets, each once, with the facets that meet there.
+// The edges of all facets, each once, with the normals of the facets that meet there.
 class Outlines {
  public:
   explicit Outlines(const Facets& facets);
 
-  // The edges at which the surface ends or turns away from the light; only these bound shadows.
+  // Edges at which the surface ends or turns away from the light; only these bound shadows.
   void in_light(const Vec3& travel, std::vector<Line>& lines) const;
-  // Lines where the view against `travel` changes: outlines and creases in sight.
+  // Lines where the view against `travel` changes: visible outlines and creases.
   void in_sight(const Vec3& travel, std::vector<Line>& lines) const;
 
  private:
@@ -26,17 +26,18 @@ class Outlines {
   std::vector<Edge> edges_;
 };
 
-// The lines at which other facets cut through each facet.
+// Lines at which other facets cut through each facet.
 std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m);
 
-// Lines by where light along `travel` carries them, so that those over a facet are found fast.
+// A grid of lines, projected along the light's direction `travel`, for fast search of the lines
+// over a facet.
 class LineGrid {
  public:
-  // `radius_m`: all lines lie in a ball about the origin.
+  // `radius_m`: all lines lie in a ball of this radius about the origin.
   LineGrid(std::vector<Line> lines, const Vec3& travel, double radius_m);
 
   const std::vector<Line>& lines() const { return lines_; }
-  // The lines that may pass over or under a triangle.
+  // Finds the lines that may pass over or under a triangle.
   void over(const TriangleCorners& corners_m, std::vector<Line>& found);
 
  private:
@@ -51,7 +52,7 @@ class LineGrid {
   Vec3 across_, aside_;
   double low_m_, per_m_;
   std::vector<std::vector<uint32_t>> cells_;
-  std::vector<uint32_t> seen_;  // number of the query that saw it last
+  std::vector<uint32_t> seen_;  // number of the query that found it last
   uint32_t question_ = 0;
 };
 

@@ -6,8 +6,8 @@
 namespace photorque {
 namespace {
 
-constexpr double touching = 1e-9;  // of a cell: as good as outside
-constexpr size_t few = 4;          // lines that a cell is cut by
+constexpr double touching = 1e-9;  // of a cell: traces this close to its side count as outside
+constexpr size_t few = 4;          // maximum number of lines that cut one cell
 
 // Keeps one of several traces on the same line.
 void thin_out(std::vector<Trace>& traces) {
@@ -26,7 +26,7 @@ void thin_out(std::vector<Trace>& traces) {
   }
 }
 
-// A convex part of a cell in the weights of the corners 1 and 2.
+// A convex part of a cell, in the weights of the corners 1 and 2.
 class Polygon {
  public:
   static Polygon whole() {
@@ -35,7 +35,7 @@ class Polygon {
     all.count_ = 3;
     return all;
   }
-  // The parts on either side of the line through `from` and `to`.
+  // Parts on either side of the line through `from` and `to`.
   std::array<Polygon, 2> split(const Vec2& from, const Vec2& to) const {
     const Vec2 along = to - from;
     const auto side_of = [&](const Vec2& p) {
@@ -72,7 +72,7 @@ class Polygon {
 
  private:
   void add(const Vec2& p) {
-    if (count_ < corner_.size()) corner_[count_++] = p;  // more only by rounding
+    if (count_ < corner_.size()) corner_[count_++] = p;  // more corners only by rounding
   }
   double twice_area(size_t i) const {
     const Vec2 a = corner_[i] - corner_[0], b = corner_[i + 1] - corner_[0];
@@ -101,7 +101,7 @@ void cut_along(const Cell& cell, std::span<const Trace> traces, std::vector<Piec
   }
 }
 
-// Whether a trace lies beyond the side that a quarter has in common with others.
+// Whether a trace lies outside a quarter, beyond the side that the quarter shares with others.
 bool beside(const Trace& trace, uint32_t which) {
   const auto both = [&](int k, const auto& hold) {
     return hold(trace.from[k]) && hold(trace.to[k]);
@@ -121,7 +121,7 @@ class Descent {
         deepest_(deepest),
         pieces_(pieces) {}
 
-  // The traces of a cell are those from `begin` on; they are gone afterwards.
+  // Processes a cell. Its traces are those from `begin` on; they are removed afterwards.
   void run(const Cell& cell, size_t begin) {
     const size_t count = traces_.size() - begin;
     const bool fine = cell.level >= (count == 0 ? levels_.finest : levels_.along_traces);
@@ -130,7 +130,7 @@ class Descent {
       return;
     }
     if (fine && count <= 4 * few) {
-      // A cell is cut along whole lines: it does not matter where on one of them a trace ends.
+      // A cell is cut along whole lines, so the ends of a trace on its line do not matter.
       lines_.assign(traces_.begin() + static_cast<std::ptrdiff_t>(begin), traces_.end());
       thin_out(lines_);
       if (lines_.size() <= few) {
@@ -151,7 +151,7 @@ class Descent {
   }
 
  private:
-  std::vector<Trace> traces_;  // of the cell at hand, behind those of all that hold it
+  std::vector<Trace> traces_;  // of the current cell, after those of the cells that contain it
   std::vector<Trace> lines_;
   Levels levels_;
   uint32_t deepest_;
@@ -169,7 +169,7 @@ Screen::Screen(const Facet& facet) : area_m2_(facet.area_m2), corner_m_(facet.co
 
 void Screen::add(std::span<const Line> lines, const Vec3& normal, const Vec3& travel,
                  double rounding_m) {
-  // (u, v) of a point moved along the light onto the facet's plane.
+  // (u, v) of a point that is moved along the light onto the facet's plane.
   const Vec3 per_fall = normal / normal.dot(travel);
   const Vec3 to_u = u_per_m_ - u_per_m_.dot(travel) * per_fall;
   const Vec3 to_v = v_per_m_ - v_per_m_.dot(travel) * per_fall;

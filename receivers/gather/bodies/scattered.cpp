@@ -13,9 +13,9 @@
 namespace photorque {
 namespace {
 
-constexpr size_t chunk = 64;  // patches that one piece of work sends rays from
+constexpr size_t chunk = 64;  // patches per item of parallel work
 
-// Points all over a patch in the order of a sequence, each with a direction by Lambert's law.
+// Sobol points on a patch, each with a direction by Lambert's law.
 struct Starts {
   std::vector<Vec3> at_m, direction;
 };
@@ -40,7 +40,7 @@ Starts starts_of(const Facet& facet, const Cell& cell, const Vec3& normal,
   return starts;
 }
 
-// Whether another surface is close above each of at most a block of points.
+// For each of at most one block of points: whether another surface is close above it.
 std::vector<bool> covered_of(const TraceableScene& scene, std::span<const Vec3> at_m,
                              const Vec3& normal, double close_m) {
   std::array<ShadowRay, sobol_block> rays;
@@ -128,10 +128,10 @@ ScatteredLight::ScatteredLight(const TraceableScene& scene, const Shape& shape, 
   }
 }
 
-// Cuts a cell until it is small against the body and against parts on it or close above it.
+// Divides a cell until it is small compared with the body and with parts on it or close above it.
 void ScatteredLight::grow(size_t side, size_t node, const Cell& cell, std::span<const Trace> traces,
                           const Facet& facet, double patch_m2) {
-  constexpr uint32_t finer = 3;  // cuts below the common size
+  constexpr uint32_t finer = 3;  // additional divisions below the common size
   constexpr double margin = 0.5;
   const double cell_m2 = cell.share() * facet.area_m2, size_m = std::sqrt(cell_m2);
   std::vector<Trace> close;
@@ -156,7 +156,8 @@ void ScatteredLight::grow(size_t side, size_t node, const Cell& cell, std::span<
   }
 }
 
-// Patches all covered or all clear have one value.
+// Determines the covered fraction of crowded patches. A patch that is completely covered or
+// completely clear needs one value only and is no longer crowded.
 void ScatteredLight::find_covered(const TraceableScene& scene, const Facets& facets,
                                   uint64_t seed) {
   for (const Patch& patch : patches_) {
@@ -184,7 +185,7 @@ std::vector<ScatteredLight::Work> ScatteredLight::work_of(const Task& task) cons
   return work;
 }
 
-// A watt of light from those places of a patch that are of its kind.
+// Adds rays of 1 W in total from the points of a patch that are of one kind (covered or clear).
 void ScatteredLight::add_starts(const Task& task, const Work& one, uint64_t number, uint32_t count,
                                 uint32_t owner, std::vector<OnwardRay>& rays) const {
   const Patch& patch = one.patch;
@@ -206,11 +207,11 @@ void ScatteredLight::add_starts(const Task& task, const Work& one, uint64_t numb
           .push_back({from, starts.direction[i], {}, owner});
     }
   }
-  if (rays.empty()) std::swap(rays, others);  // too few to meet a place of this kind
+  if (rays.empty()) std::swap(rays, others);  // no sampled point is of this kind: use the others
   for (OnwardRay& ray : rays) ray.power_W[task.band] = 1.0 / static_cast<double>(rays.size());
 }
 
-// Merges the light from one patch to another into one part.
+// Merges all parts with the same place into one.
 void ScatteredLight::merge_places(std::vector<Reached::Part>& parts, size_t from) {
   const auto begin = parts.begin() + static_cast<std::ptrdiff_t>(from);
   std::stable_sort(begin, parts.end(),
@@ -254,7 +255,7 @@ std::vector<ScatteredLight::Reached> ScatteredLight::send_out(const Task& task,
   return reached;
 }
 
-// w = contact + fractions · w, by going round until nothing changes.
+// Solves w = contact + fractions · w by fixed-point iteration.
 void ScatteredLight::settle(const Task& task, const std::vector<Work>& work,
                             const std::vector<Reached>& reached) {
   std::vector<Pair>& per_watt = per_watt_[task.band];
@@ -271,7 +272,7 @@ void ScatteredLight::settle(const Task& task, const std::vector<Work>& work,
         next[c * chunk + one.patch] += one.fraction * there.segment<6>(own);
       }
     });
-    // First element: forces; second: torques.
+    // First element: forces; second element: torques.
     Eigen::Array2d change = Eigen::Array2d::Zero(), largest = Eigen::Array2d::Zero();
     const auto sizes = [](const WrenchSum& wrench) {
       return Eigen::Array2d(wrench.head<3>().abs().maxCoeff(), wrench.tail<3>().abs().maxCoeff());

@@ -1,10 +1,10 @@
 // Force and torque of light that a surface scatters by Lambert's law.
 //
 // Scattered light does not depend on the direction of the incident light. The force and torque per
-// watt of scattered light, all later interactions included, are therefore a field w(x) on the
+// watt of scattered light, including all later interactions, are therefore a field w(x) on the
 // surfaces:
 //
-//   w(x) = ∫ cos θ/π [contact(y) + scattered share(y) w(y) + what goes on by mirrors] dω,
+//   w(x) = ∫ cos θ/π [contact(y) + scattered fraction(y) w(y) + light continued by mirrors] dω,
 //
 // where y is the point that the direction ω from x meets. Rays from every patch of the surface give
 // linear equations for w. They are solved for two independent sets of rays; the difference is the
@@ -27,51 +27,51 @@ using TwofoldSum = Eigen::Array<double, 12, 1>;
 class ScatteredLight {
  public:
   struct Effort {
-    size_t patches = 1000;       // about, of equal areas; at least one for each facet
-    uint64_t rays = 1ull << 23;  // about, of either set
+    size_t patches = 1000;       // approximate number, of equal areas; at least one per facet
+    uint64_t rays = 1ull << 23;  // approximate number in each set
     uint64_t seed = 1;
     int threads = 0;
   };
 
-  // Facets, and all lines at which something may end over them. By facet: where others cut it.
+  // Facets and outlines, and for each facet the lines at which others cut it.
   struct Shape {
     const Facets& facets;
     const Outlines& outlines;
     const std::vector<std::vector<Line>>& cuts;
   };
-  // Facets' sides from which nothing is to be seen scatter into empty space.
+  // Sides of facets from which no surface is visible scatter into empty space.
   ScatteredLight(const TraceableScene& scene, const Shape& shape, const Vec3& about_m,
                  const Effort& effort);
 
-  // Force and torque about the point per watt of this band that leaves a piece of a side: the mean
-  // over a whole cell, or that of the patch at its centre. Near lines(), the value depends on
-  // whether another surface is close above the piece (`covered`).
+  // Force and torque about the point, per watt of this band that leaves a piece of a side: the mean
+  // over a whole cell, or the value of the patch at the piece's centre. Near lines(), the value
+  // depends on whether another surface is close above the piece (`covered`).
   const TwofoldSum& per_watt(size_t side, const Piece& piece, bool covered, size_t band) const {
     const size_t node = piece.whole ? node_of(side, piece.cell.level, piece.cell.path)
                                     : node_at(side, piece.centre_uv);
     return per_watt_[band][node][covered ? 1 : 0];
   }
-  // The edges of parts closely above a side.
+  // Edges of parts close above a side.
   std::span<const Line> lines(size_t side) const { return lines_[side]; }
-  // The area of most patches.
+  // Maximum area of a patch [m²].
   double patch_m2() const { return patch_m2_; }
-  // Largest distance of a surface that is close above a piece.
+  // Maximum distance [m] of a surface that counts as close above a piece.
   double close_m() const { return close_m_; }
-  // For points at which the arriving light is not traced: weighted by the covered fraction of the
+  // For points where the arriving light is not traced: averaged with the covered fraction of the
   // patch.
   TwofoldSum per_watt_at(size_t side, const Vec2& uv, size_t band) const {
     const size_t node = node_at(side, uv);
     return mixed(per_watt_[band][node], nodes_[node].covered);
   }
-  // Light from there meets nothing.
+  // Whether light from this side meets nothing.
   bool unseen(size_t side) const { return unseen_[side]; }
 
  private:
   // Node of the tree of cells of each side; undivided nodes are the patches.
   struct Node {
     uint32_t first_quarter = 0;  // 0: a patch
-    bool crowded = false;        // something begins or ends over it, close by
-    double covered = 0.0;        // share of its area that has something closely above
+    bool crowded = false;        // both covered and clear points exist
+    double covered = 0.0;        // fraction of its area with another surface close above
   };
   struct Patch {
     size_t side, node;
@@ -88,7 +88,7 @@ class ScatteredLight {
             const Facet& facet, double patch_m2);
   void find_covered(const TraceableScene& scene, const Facets& facets, uint64_t seed);
 
-  // Computes the field of one band with one set of rays.
+  // Computation of the field of one band with one set of rays.
   struct Task {
     const TraceableScene& scene;
     const Facets& facets;
@@ -97,16 +97,16 @@ class ScatteredLight {
     size_t band;
     int half;
   };
-  // A crowded patch twice, once for either kind of its places.
+  // A patch and one kind of its points (1: covered). A crowded patch occurs twice, once per kind.
   struct Work {
     Patch patch;
     size_t kind;
   };
-  // The places that the rays of some patches met: the momentum left there, and the fractions that
-  // other patches scatter on.
+  // Results of the rays of some patches: the momentum left at the places that they met, and the
+  // fractions that other patches scatter.
   struct Reached {
     struct Part {
-      uint32_t patch;  // of the chunk
+      uint32_t patch;  // within the chunk
       size_t place;
       double fraction;
     };

@@ -12,9 +12,10 @@ namespace photorque {
 namespace {
 
 constexpr size_t most_facets = 20'000;
-constexpr double widest_rad = 1.0 * degree_rad;  // largest half-angle treated as a point in shadows
-constexpr double rounding = 1e-7;                // of the scene size: still in the facet's plane
-constexpr double least_piece = 1e-6;             // of the total area: not cut further
+// Largest half-angle of a light that is treated as a point for shadows.
+constexpr double widest_rad = 1.0 * degree_rad;
+constexpr double rounding = 1e-7;     // of the scene's size: counts as in the facet's plane
+constexpr double least_piece = 1e-6;  // of the total area: smaller pieces are not cut
 
 // Sums the force and torque of the onward light of each owner, the piece that emitted the ray.
 OnwardSink adding_to(std::vector<TwofoldSum>& sums, const ScatteredLight& scattered) {
@@ -32,7 +33,7 @@ OnwardSink adding_to(std::vector<TwofoldSum>& sums, const ScatteredLight& scatte
 
 }  // namespace
 
-// The computation for one direction of the light.
+// Computation for one direction of the light.
 class SunlitBody::Direction {
  public:
   Direction(const SunlitBody& body, const RigidTransform& lab_from_body, double tolerance_N_m)

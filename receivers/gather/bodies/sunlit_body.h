@@ -1,20 +1,20 @@
-// Force and torque of sunlight on a body, with all that bounces, almost without noise: for tables
-// over thousands of directions.
+// Force and torque of sunlight on a body, including all bounces, with little noise. For tables over
+// thousands of directions.
 //
-// Direct light. Parallel light shades along straight lines: every edge of a shadow is the trace of
-// an edge at which a mesh ends or turns away from the light, or of a line at which one surface cuts
-// through another. Each lit facet is cut along these traces into pieces that are lit as a whole or
-// not at all, one shadow ray each; areas and centres of the pieces are exact. The size of the Sun
-// is included in the light that arrives on a facet, but not in its shadows. The penumbra adds and
-// removes nearly equal light on either side of an edge; the error is of the order of the square of
-// the half-angle of the Sun.
+// Direct light. Every edge of a shadow in parallel light is the trace of a straight line. This line
+// is an edge at which a mesh ends or turns away from the light, or a cut of one surface through
+// another. Each lit facet is cut along these traces into pieces that are completely lit or
+// completely dark; one shadow ray decides. Areas and centres of the pieces are exact. The size of
+// the Sun is included in the light that arrives on a facet, but not in its shadows. The penumbra
+// adds and removes nearly equal light on either side of an edge; the error is of the order of the
+// square of the half-angle of the Sun.
 //
-// Onward light. The light that is scattered by Lambert's law is a field on the surfaces that does
-// not depend on the incident direction (scattered.h). Light from mirrors and through thin sheets is
-// traced from small cells of the lit pieces; the cells are smaller where neighbours disagree.
+// Onward light. Light scattered by Lambert's law is a field on the surfaces that does not depend on
+// the incident direction (scattered.h). Light from mirrors and through thin sheets is traced from
+// small cells of the lit pieces. Cells are divided further where neighbours disagree.
 //
 // Only for scenes with these interactions. Other surfaces and near lamps are traced with rays
-// (raytrace/tracing/tracer.h), which are independent and serve as the reference in tests.
+// (raytrace/tracing/tracer.h). The two methods are independent; tests compare them.
 #pragma once
 
 #include <memory>
@@ -26,32 +26,33 @@ namespace photorque {
 
 struct SunlitEffort {
   ScatteredLight::Effort scattered = {};
-  size_t mirror_cells = 1000;  // of about equal areas, over all surfaces
+  size_t mirror_cells = 1000;  // approximate number, of about equal areas, over all surfaces
 };
 
-// A wrench of sunlight: of the first contact, and of all later light twice, from independent
-// estimates of the scattered light.
+// Wrench of sunlight: of the first contact, and of all later light in two independent estimates of
+// the scattered light.
 struct SunlitWrench {
   WrenchSum direct = WrenchSum::Zero();
   TwofoldSum bounced = TwofoldSum::Zero();
-  // One standard error of mirrored light, from the scatter within the last cells.
+  // Standard error of mirrored light, from the scatter within the last cells.
   WrenchSum mirror_error = WrenchSum::Zero();
   uint64_t rays = 0;
 
   WrenchSum total() const { return direct + 0.5 * (bounced.head<6>() + bounced.tail<6>()); }
 };
 
-// A scene prepared for any direction of the light. Immutable and safe to call from many threads.
+// A scene prepared for any direction of the light. Immutable; safe to call from many threads.
 class SunlitBody {
  public:
-  // Null unless the only beam is a sun of at most 1 deg half-angle, all surfaces are plain and the
-  // facets no more than 20,000, which can be tested against each other. `scene` must outlive this.
+  // Null unless the only beam is a sun of at most 1 deg half-angle, all surfaces are plain and
+  // there are at most 20,000 facets, which are tested against each other. `scene` must outlive the
+  // result.
   static std::unique_ptr<const SunlitBody> make(const TraceableScene& scene,
                                                 std::span<const Beam> beams, const Vec3& about_m,
                                                 const SunlitEffort& effort = {});
 
-  // About the point of make(), in the body frame. Cells of mirrored light are cut as long as one of
-  // them may be wrong by `tolerance_N_m`; infinite: never.
+  // Wrench about the point of make(), in the body frame [N, N m]. Cells of mirrored light are
+  // divided until the error of each is below `tolerance_N_m`; infinite: never divided.
   SunlitWrench wrench(const RigidTransform& lab_from_body, double tolerance_N_m) const;
 
  private:

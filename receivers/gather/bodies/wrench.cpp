@@ -16,16 +16,16 @@ namespace photorque {
 
 namespace {
 
-// A side that may be in a shadow, or that not every ray meets from the front.
+// A side that may be shaded, or that some rays meet from behind.
 struct SampledSide {
   FacetSide side;
   bool whole;           // Exposure::whole
-  double power_W;       // about
+  double power_W;       // estimated power
   uint32_t points = 1;  // rays per replicate: a power of two
 };
 
-// The lamp, what both sides of the instance do with its light [back, front], and the point of
-// torques.
+// The lamp, the effect of its light on both sides of the instance [back, front], and the reference
+// point of torques.
 struct SampledLight {
   const TraceableScene& scene;
   const BodyLamp& lamp;
@@ -33,13 +33,13 @@ struct SampledLight {
   Vec3 about_m;
 };
 
-// The results: six numbers for each replicate, and the bounds of their errors.
+// Results: six numbers per replicate, and the bounds of their errors.
 struct WrenchEntries {
   std::span<WrenchSum> replicates;
   WrenchSum& bound;
 };
 
-// Adds the light on a side that nothing can shade.
+// Adds the light on a side as if nothing shaded it.
 void add_open(const SampledLight& light, const FacetSide& side, const WrenchEntries& entries) {
   const auto open = light.lamp.open_wrench(side, light.contact[side.front ? 1 : 0], light.about_m);
   for (WrenchSum& replicate : entries.replicates) replicate += open.wrench;
@@ -47,7 +47,7 @@ void add_open(const SampledLight& light, const FacetSide& side, const WrenchEntr
   entries.bound.tail<3>() += open.torque_error_N_m;
 }
 
-// A ray towards a side of the group.
+// A ray to a side of the group.
 struct GroupRay {
   Vec3 at_m, travel;  // body frame
   double power_W;
@@ -55,13 +55,13 @@ struct GroupRay {
   bool lit;
 };
 
-// The properties that decide how the light of a side is summed.
+// Power that determines how the light of a side is summed.
 struct SideLight {
   double lit_W = 0.0, dark_W = 0.0;
-  bool as_open = false;  // less the dark part
+  bool as_open = false;  // the open light minus the blocked rays
 };
 
-// Sides whose points share a block, or one that takes several blocks.
+// Samples a group: several sides that share a block of points, or one side with several blocks.
 class FacetSampler {
  public:
   FacetSampler(const SampledLight& light, const WrenchEntries& entries)
@@ -71,7 +71,8 @@ class FacetSampler {
         body_from_emitter_(light.lamp.body_from_emitter().rotation.toRotationMatrix()),
         emitter_from_body_(body_from_emitter_.transpose()) {}
 
-  // The points of the group begin at `first` of each replicate's sequence.
+  // Samples a group with the points of each replicate's sequence from `first` on. Returns the
+  // number of rays.
   uint64_t run(std::span<const SampledSide> group, std::span<const SobolStream> streams,
                uint32_t first) {
     const size_t blocks = std::max<size_t>(group[0].points / ray_block, 1);
@@ -99,7 +100,7 @@ class FacetSampler {
   }
 
  private:
-  // Lines to one side, from the points [first, first + count) of the block.
+  // Adds rays to one side, from the points [first, first + count) of the block.
   void add_lines(const SampledSide& sampled, uint32_t index, size_t first, size_t count) {
     const Facet& facet = *sampled.side.facet;
     const Vec3 normal = sampled.side.normal(), normal_emitter = emitter_from_body_ * normal;
@@ -111,7 +112,7 @@ class FacetSampler {
     const size_t dimension = directed ? 0 : 2;
     const double share_m2 = facet.area_m2 / static_cast<double>(sampled.points);
     for (size_t i = first; i < first + count; ++i) {
-      // Area-preserving from the unit square.
+      // Area-preserving map of the unit square to the triangle.
       const double root = std::sqrt(sobol_fraction(samples_.bits[dimension][i]));
       const double t = sobol_fraction(samples_.bits[dimension + 1][i]);
       const Vec3 at = origin + root * (1.0 - t) * edge1 + root * t * edge2;
@@ -177,15 +178,15 @@ class FacetSampler {
   SampleBlock samples_;
   RayBlock emitted_;
   size_t count_ = 0, replicate_ = 0;
-  std::vector<GroupRay> rays_;    // of the group, replicate by replicate
+  std::vector<GroupRay> rays_;    // of the group, in the order of the replicates
   std::vector<SideLight> sides_;  // of the group
   std::array<ShadowRay, ray_block> shadow_;
   std::array<uint8_t, ray_block> lit_;
 };
 
-// Adds the light that gets through to `sides`. Where all rays get through to a plain side, it is
-// what nothing shades, without noise; where most do, that less what is kept away. The points of
-// replicate r come from the stream (seed, hash of `which` and r). Returns the number of rays.
+// Adds the light that reaches `sides`. If most rays reach a plain side, its light is the open light
+// minus the blocked rays; without blocked rays it has no noise. The points of replicate r come from
+// the stream (seed, hash of `which` and r). Returns the number of rays.
 uint64_t add_sampled(const SampledLight& light, std::vector<SampledSide> sides, uint64_t seed,
                      uint64_t which, const WrenchEntries& entries) {
   // Sorted by size, so that the points of each side are a complete interval of the sequence.
@@ -209,7 +210,7 @@ uint64_t add_sampled(const SampledLight& light, std::vector<SampledSide> sides, 
   return rays;
 }
 
-// The light of one lamp on one instance: the item of parallel work.
+// Light of one lamp on one instance: an item of parallel work.
 struct Item {
   uint32_t lamp, instance;
   size_t part;  // of the receiver
@@ -230,7 +231,7 @@ void find_sides(const Facets& facets, const BodyLamp& lamp, bool plain, const Ve
                 Item& item) {
   const Ball& ball = facets.ball_of(item.instance);
   if (lamp.misses(ball)) return;
-  // The inside of a body is dark for lamps outside of it.
+  // The inside of a body is dark for lamps outside it.
   const auto inward = lamp.outside(ball) ? facets.inward(item.instance) : std::nullopt;
   for (const Facet& facet : facets.of(item.instance)) {
     for (const bool front : {false, true}) {
@@ -248,7 +249,7 @@ void find_sides(const Facets& facets, const BodyLamp& lamp, bool plain, const Ve
   }
 }
 
-// Distributes the rays in proportion to the light.
+// Distributes the rays in proportion to the weights of the sides.
 void distribute_rays(Item& item, double points_per_weight, const Vec3& about_m) {
   constexpr double most = 1 << 14;
   for (SampledSide& sampled : item.sampled) {
@@ -299,7 +300,7 @@ WrenchGather::WrenchGather(const TraceableScene& scene, std::span<const Beam> be
       beams_(beams.begin(), beams.end()),
       facets_(scene.scene()),
       lights_(std::move(lights)) {
-  // Tables serve all attitudes: the body turns about the lab's origin.
+  // The tables are valid at all attitudes, because the body rotates about the lab's origin.
   const double radius_m = scene.scene().radius_m();
   for (size_t i = 0; i < beams_.size(); ++i) {
     const double height_m = beams_[i].lab_from_emitter.inverse().point(Vec3::Zero()).z();

@@ -15,16 +15,16 @@
 
 namespace photorque {
 
-// A scene and its lamps, prepared for any attitude. Immutable and safe to call from many threads.
+// A scene and its lamps, prepared for any attitude. Immutable; safe to call from many threads.
 class WrenchGather {
  public:
-  // Null if a lamp has no uniform aperture, or if a near lamp has a beam with an edge, which the
-  // quadrature over facets does not resolve. `scene` must outlive this.
+  // Null if a lamp has no uniform aperture, or if the beam of a near lamp has an edge, which the
+  // quadrature over facets does not resolve. `scene` must outlive the result.
   static std::unique_ptr<const WrenchGather> make(const TraceableScene& scene,
                                                   std::span<const Beam> beams);
 
-  // The direct entries of the receiver, at the attitude `lab_from_body`. Uses seed, replicates,
-  // threads and body_points of the options. The result is bitwise equal at any number of threads.
+  // Direct entries of the receiver, at the attitude `lab_from_body`. Uses seed, replicates, threads
+  // and body_points of the options. The result has the same bits for any number of threads.
   Gathered wrench(const RigidTransform& lab_from_body, const WrenchReceiver& receiver,
                   const GatherOptions& options) const;
 

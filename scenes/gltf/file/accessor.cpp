@@ -8,7 +8,7 @@ namespace {
 
 template <typename Number>
 Number load(const unsigned char* bytes) {
-  Number value;  // glTF and every machine that this program runs on are little-endian
+  Number value;  // glTF is little-endian, as are all supported machines
   std::memcpy(&value, bytes, sizeof value);
   return value;
 }
@@ -24,7 +24,7 @@ uint32_t load_index(const unsigned char* bytes, int component_type) {
   }
 }
 
-// The start of `offset` in a bufferView.
+// Address at `offset` in a bufferView.
 const unsigned char* bytes_at(const Document& document, int view, size_t offset,
                               const std::string& where) {
   const tinygltf::BufferView& buffer_view = document.model.bufferViews[static_cast<size_t>(view)];

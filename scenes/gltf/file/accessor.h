@@ -9,7 +9,7 @@
 
 namespace photorque::gltf {
 
-// Sizes of the parts of an element (section 3.6.2.4: columns of matrices start at multiples of 4).
+// Sizes within an element (section 3.6.2.4: columns of matrices start at multiples of 4 bytes).
 struct ElementLayout {
   size_t component_bytes = 0;
   size_t components = 0;
@@ -17,12 +17,12 @@ struct ElementLayout {
 };
 ElementLayout layout_of(const tinygltf::Accessor& accessor);
 
-// One accessor, opened for reading; valid as long as the document. The document must have passed
+// Reader of one accessor; valid as long as the document. The document must have passed
 // validate_accessors(), so that every read is inside its buffer.
 class AccessorReader {
  public:
-  // Throws InputError when the bytes are absent (a placeholder buffer) or the indices of a sparse
-  // accessor do not rise or leave its range.
+  // Throws InputError if the bytes are absent (a placeholder buffer), or if the indices of a sparse
+  // accessor do not rise or exceed its range.
   AccessorReader(const Document& document, int accessor, MemoryBudget* budget);
 
   size_t count() const { return count_; }
@@ -31,7 +31,7 @@ class AccessorReader {
   // normalized accessors are scaled to [0, 1] or [−1, 1] (section 3.6.2.2).
   double number(size_t element, size_t component) const;
 
-  // The unsigned integer at `element`, of a scalar accessor.
+  // Unsigned integer at `element` of a scalar accessor.
   uint32_t index(size_t element) const;
 
  private:

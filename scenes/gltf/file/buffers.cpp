@@ -21,7 +21,7 @@ int base64_digit(char c) {
   return -1;
 }
 
-// RFC 4648, padding optional. Nothing when a character or the length is impossible.
+// Decodes base64 (RFC 4648), padding optional. Empty if a character or the length is invalid.
 std::optional<std::string> base64_decoded(std::string_view text) {
   for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
   if (text.size() % 4 == 1) return std::nullopt;
@@ -41,7 +41,7 @@ std::optional<std::string> base64_decoded(std::string_view text) {
   return decoded;
 }
 
-// A short piece of a URI for messages: data URIs can be megabytes.
+// A short excerpt of a URI for messages: data URIs can have megabytes.
 std::string excerpt(const std::string& uri) {
   return describe_json(nlohmann::json(uri));
 }
@@ -96,7 +96,8 @@ class Loader {
     return std::string(*binary_);
   }
 
-  // RFC 2397; the media types are those that section 3.6.1.1 of the specification admits.
+  // Bytes of a data URI (RFC 2397). `types` are the media types allowed by section 3.6.1.1 of the
+  // specification.
   std::string data_uri(const std::string& uri, const std::array<std::string_view, 2>& types) {
     const size_t comma = uri.find(',');
     if (comma == std::string::npos) throw wrong("uri", excerpt(uri), "a data URI with a comma");
@@ -119,8 +120,8 @@ class Loader {
     return *decoded;
   }
 
-  // The path of an external file, relative to the model's folder. Whether it may lead out of it is
-  // decided where files are opened.
+  // Relative path of an external file. Whether it may leave the model's folder is checked where
+  // files are opened.
   std::string checked_path(const std::string& uri) const {
     const std::string expected = "a relative path inside the model's folder";
     const std::optional<std::string> decoded = percent_decoded(uri);

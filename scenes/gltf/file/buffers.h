@@ -1,4 +1,4 @@
-// The bytes to which a glTF document refers. Only this part of the reader opens files.
+// Bytes to which a glTF document refers. Only this part of the reader opens files.
 #pragma once
 
 #include <array>
@@ -15,8 +15,9 @@
 
 namespace photorque::gltf {
 
-// `bytes` holds at least byte_length; nothing when the document leaves the source open, which is
-// legal as long as it is not read (placeholders, fallbacks of compressed data).
+// `bytes` contains at least byte_length bytes. It is empty if the document does not state the
+// source, which is legal for buffers that are not read (placeholders, fallbacks of compressed
+// data).
 struct Buffer {
   uint64_t byte_length = 0;
   std::optional<std::string> bytes;
@@ -34,14 +35,14 @@ Buffers load_buffers(const nlohmann::json& document, std::optional<std::string_v
                      bool is_glb, const std::string& file, const GltfOpen& open,
                      MemoryBudget* budget);
 
-// Something with a `uri`.
+// A JSON object with a `uri`.
 struct UriHolder {
   const nlohmann::json& object;
   std::string where;                            // JSON pointer, for messages
-  std::array<std::string_view, 2> media_types;  // that may be embedded
+  std::array<std::string_view, 2> media_types;  // allowed for embedded data
 };
 
-// The bytes behind its URI: embedded, or a file. Throws InputError as above.
+// Bytes of a URI: embedded data or a file. Throws InputError like load_buffers().
 std::string load_uri(const UriHolder& holder, const std::string& file, const GltfOpen& open,
                      MemoryBudget* budget);
 

@@ -7,7 +7,8 @@ namespace photorque::gltf {
 using nlohmann::json;
 
 void decompress(Document* document, MemoryBudget* budget) {
-  decode_meshopt_views(document, budget);  // Draco data may lie in a view that it packs
+  // First, because Draco data may lie in a view that it decodes.
+  decode_meshopt_views(document, budget);
   decode_draco_primitives(document, budget);
 }
 

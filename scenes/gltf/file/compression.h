@@ -1,4 +1,4 @@
-// Compressed geometry of a glTF document, replaced by plain geometry.
+// Replaces compressed geometry of a glTF document by plain geometry.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +10,24 @@
 namespace photorque::gltf {
 
 // Decodes EXT_meshopt_compression (buffer views) and KHR_draco_mesh_compression (primitives), so
-// that no other part of the reader handles them: the bytes become additional buffers of the
-// document, with their own views and accessors. Call it before the typed model is made.
+// that other parts of the reader need not handle them. The decoded bytes become additional buffers
+// of the document, with their own views and accessors. Call it before the typed model is made.
 //
-// A primitive with Draco data keeps its plain accessors where they have bytes; else it gets
+// A primitive with Draco data keeps its plain accessors if they have bytes. Otherwise it gets
 // POSITION, TEXCOORD_0 and indices from the data, and no other attribute. Throws InputError for
 // data that cannot be decoded or that contradict their description in the document.
 void decompress(Document* document, MemoryBudget* budget);
 
-// The two codecs; `where` points at the extension for messages.
+// The two decoders; `where` in messages is the extension.
 void decode_meshopt_views(Document* document, MemoryBudget* budget);
 void decode_draco_primitives(Document* document, MemoryBudget* budget);
 
-// An unsigned integer below 2^53 of an extension, which no schema has checked.
+// An unsigned integer below 2^53 of an extension that check_schema() does not cover. Throws
+// InputError for other values.
 uint64_t extension_number(const Document& document, const nlohmann::json& extension,
                           const char* key, const std::string& where);
 
-// Bytes of a buffer; InputError when they are not all there.
+// Bytes of a buffer. Throws InputError if some of them are missing.
 std::span<const unsigned char> buffer_bytes(const Document& document, uint64_t buffer,
                                             uint64_t offset, uint64_t length,
                                             const std::string& where);

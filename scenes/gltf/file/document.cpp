@@ -18,8 +18,8 @@ namespace photorque::gltf {
 
 namespace {
 
-// The outermost layer of a glTF file: plain JSON text, or the chunks of a binary file (.glb). Views
-// into the bytes of the file.
+// Outermost layer of a glTF file: plain JSON text, or the chunks of a binary file (.glb). The views
+// refer to the bytes of the file.
 struct Container {
   std::string_view json;
   std::optional<std::string_view> binary;  // the BIN chunk
@@ -43,7 +43,7 @@ struct Chunk {
   std::string_view data;
 };
 
-// The bytes between the header and the declared end.
+// Bytes from the header to the declared end.
 std::string_view checked_body(std::string_view bytes, const std::string& file,
                               std::vector<std::string>* notices) {
   const auto wrong = [&](const std::string& found, const std::string& expected) {
@@ -86,10 +86,11 @@ std::vector<Chunk> split(std::string_view body, const std::string& file) {
   return chunks;
 }
 
-// Splits a file. It is binary when it begins with the magic "glTF" or `file` ends in ".glb".
-// Throws InputError for everything that the specification's chapter 4 forbids: wrong magic or
-// version, a length beyond the file, truncated, unaligned, missing, misplaced or repeated chunks.
-// Bytes after the declared length and chunks of unknown type are passed over with a notice.
+// Splits a file into JSON and binary chunk. It is binary if it begins with the magic "glTF" or if
+// `file` ends in ".glb". Throws InputError for all violations of chapter 4 of the specification:
+// wrong magic or version, a length beyond the file, truncated, unaligned, missing, misplaced or
+// repeated chunks. Bytes after the declared length and chunks of unknown type are ignored with a
+// notice.
 Container open_container(std::string_view bytes, const std::string& file) {
   Container container;
   container.is_binary = bytes.starts_with("glTF") || file.ends_with(".glb");
@@ -121,11 +122,11 @@ Container open_container(std::string_view bytes, const std::string& file) {
 
 using nlohmann::json;
 
-// Deeper nesting means nothing in glTF, and readers recurse once per level.
+// glTF needs no deeper nesting, and readers recurse once per level.
 constexpr int deepest_nesting = 64;
 
-// Extensions that leave triangles and transforms alone, or that are implemented. Those that end in
-// an underscore are families.
+// Extensions that do not affect triangles and transforms, or that are implemented. Names that end
+// in an underscore are prefixes.
 constexpr std::array harmless_extensions = {"KHR_materials_",
                                             "KHR_texture_",
                                             "EXT_texture_",
@@ -151,8 +152,8 @@ bool is_harmless(std::string_view extension) {
       });
 }
 
-// Rejects documents of excessive cost, before anything is built from them: deep nesting, and more
-// values than there is memory for.
+// Rejects documents of excessive cost before they are parsed: deep nesting, or more values than the
+// memory budget allows.
 void check_extent(std::string_view text, const std::string& file, MemoryBudget* budget) {
   constexpr uint64_t bytes_per_value = 256;
   const JsonExtent extent = extent_of_json(text);
@@ -164,8 +165,9 @@ void check_extent(std::string_view text, const std::string& file, MemoryBudget* 
   budget->charge(extent.values, bytes_per_value, "");
 }
 
+// Short reason of a JSON error, without the position, which the caller adds:
 // "[json.exception.parse_error.101] parse error at line 1, column 2: unexpected end" → "unexpected
-// end": the caller adds the place.
+// end".
 std::string reason(const json::exception& error) {
   const std::string text = error.what();
   const size_t place = text.find("column ");
@@ -216,7 +218,8 @@ void check_required_extensions(const Document& document) {
   }
 }
 
-// Extras and extensions are read from the JSON; tinygltf would take a hundred times their size.
+// Removes extras and extensions, which are read from the JSON: tinygltf would need a hundred times
+// their size in memory.
 void strip_extras(json* value) {
   if (value->is_object()) {
     value->erase("extras");
@@ -226,9 +229,9 @@ void strip_extras(json* value) {
   for (json& item : *value) strip_extras(&item);
 }
 
-// The document for tinygltf: without the sections that no tracer needs, so that nothing in them can
-// fail; without buffers, whose bytes are already here; and without indices, whose bufferView it
-// would access.
+// The document for tinygltf. It lacks the sections that tracing does not need, so that errors in
+// them have no effect; buffers, whose bytes are already loaded; and the indices of primitives,
+// whose bufferView tinygltf would access.
 json geometry_of(const json& document) {
   json geometry = json::object();
   for (const char* key :

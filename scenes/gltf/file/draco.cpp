@@ -1,4 +1,4 @@
-// KHR_draco_mesh_compression: primitives packed by Draco. The only place for its library.
+// KHR_draco_mesh_compression: primitives compressed with Draco. The only place for this library.
 // Source: KhronosGroup/glTF, extensions/2.0/Khronos/KHR_draco_mesh_compression.
 #include <draco/compression/decode.h>
 
@@ -41,7 +41,7 @@ class Decoder {
  public:
   Decoder(Document* document, MemoryBudget* budget) : document_(*document), budget_(*budget) {}
 
-  // Replaces the primitive's geometry where it has none but Draco's.
+  // Replaces the primitive's geometry if it has only Draco data.
   void decode(size_t mesh, size_t index) {
     json& primitive = document_.json["meshes"][mesh]["primitives"][index];
     const auto extensions = primitive.find("extensions");
@@ -186,7 +186,7 @@ class Decoder {
 
   Document& document_;
   MemoryBudget& budget_;
-  std::string where_;  // of the extension being decoded
+  std::string where_;  // location of the extension that is being decoded
   std::map<std::tuple<uint64_t, uint32_t, uint32_t>, Plain> decoded_;
 };
 

@@ -10,7 +10,7 @@
 
 namespace photorque::gltf {
 
-// One reference token of a JSON pointer (RFC 6901).
+// Escapes one reference token of a JSON pointer (RFC 6901).
 inline std::string pointer_token(const std::string& token) {
   std::string escaped;
   for (const char c : token) escaped += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
@@ -26,21 +26,20 @@ inline std::string pointer_token(int index) {
   return std::to_string(index);
 }
 
-// "/accessors/3/byteOffset" from its parts.
+// JSON pointer from its parts, such as "/accessors/3/byteOffset".
 template <typename... Parts>
 std::string pointer(const Parts&... parts) {
   return (std::string() + ... + ("/" + pointer_token(parts)));
 }
 
-// Memory that a model may still take. Sizes in files are claims: they are charged here before
-// anything of that size is allocated.
+// Remaining memory for a model. Sizes stated in files are not trusted: they are charged here before
+// memory is allocated.
 class MemoryBudget {
  public:
   MemoryBudget(std::string file, uint64_t bytes)
       : file_(std::move(file)), left_(bytes), all_(bytes) {}
 
-  // Throws InputError at `where` when `count` items of `item_bytes` are more than the budget that
-  // remains.
+  // Throws InputError at `where` if `count` items of `item_bytes` exceed the remaining budget.
   void charge(uint64_t count, uint64_t item_bytes, const std::string& where) {
     if (count > left_ / item_bytes) {
       throw InputError({file_}, where,
@@ -56,14 +55,14 @@ class MemoryBudget {
   uint64_t all_;
 };
 
-// The shape of a glTF document: which members exist, of what type, in which range, and that every
-// index points at something. tinygltf replaces members of the wrong type by their defaults and
-// keeps indices as they are, so this is checked before, on the JSON itself, for everything that
-// geometry and optics depend on. Throws InputError for the first violation, its key a JSON pointer.
-// Unknown members are ignored, as the specification requires.
+// Checks the schema of a glTF document: required members, types, ranges, and that every index
+// refers to an existing element. tinygltf replaces members of the wrong type by their defaults and
+// does not check indices. Therefore the JSON is checked first, for everything on which geometry and
+// optics depend. Throws InputError for the first violation; its key is a JSON pointer. Unknown
+// members are ignored, as the specification requires.
 void check_schema(const nlohmann::json& document, const std::string& file);
 
-// A short description of a value for messages: "-3", "\"abc\"", "an array of 2".
+// Short description of a value for messages: "-3", "\"abc\"", "an array of 2".
 std::string describe_json(const nlohmann::json& value);
 
 }  // namespace photorque::gltf

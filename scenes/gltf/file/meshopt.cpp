@@ -1,5 +1,5 @@
-// EXT_meshopt_compression: buffer views packed by meshoptimizer.
-// Source: KhronosGroup/glTF, extensions/2.0/Vendor/EXT_meshopt_compression.
+// EXT_meshopt_compression: buffer views compressed with meshoptimizer. Source: KhronosGroup/glTF,
+// extensions/2.0/Vendor/EXT_meshopt_compression.
 #include <meshoptimizer.h>
 
 #include "scenes/gltf/file/compression.h"
@@ -63,7 +63,8 @@ Packed read_packed(const Document& document, const json& extension, const std::s
   return packed;
 }
 
-// A view repeats its length and stride for readers without the extension; both must agree.
+// A view repeats its length and stride for readers without the extension; both must match the
+// extension's.
 void require_equal_extents(const Document& document, const json& view, const Packed& packed,
                            size_t index) {
   const auto compare = [&](const char* key, uint64_t decoded) {

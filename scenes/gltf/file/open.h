@@ -1,4 +1,4 @@
-// Access of a model to the files beside it.
+// Access of a model to other files in its folder.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,8 @@
 
 namespace photorque {
 
-// The bytes behind a relative path (percent decoded), or nothing. InputError where the path, or a
-// link on it, leads out of the model's folder and may not.
+// Returns the bytes of a relative path (percent-decoded), or nothing. Throws InputError if the
+// path, or a link on it, leaves the model's folder and this is not allowed.
 using GltfOpen = std::function<std::optional<std::string>(const std::string& relative_path)>;
 
 }  // namespace photorque

@@ -13,12 +13,12 @@ namespace photorque::gltf {
 
 namespace {
 
-// The members of a glTF document that the reader depends on, as tables.
+// Tables of the members of a glTF document on which the reader depends.
 //
 // They follow the specification (glTF 2.0, section 5 "Properties Reference") and the READMEs of the
-// extensions that they name, member by member.
+// named extensions, member by member.
 
-// The type of a value.
+// Type of a value.
 enum class Shape {
   integer,
   number,
@@ -35,7 +35,7 @@ enum class Shape {
 
 struct Field;
 
-// The members of one kind of object.
+// Members of one kind of object.
 struct Fields {
   const Field* first = nullptr;
   size_t count = 0;
@@ -54,14 +54,14 @@ struct Field {
   bool required = false;
   double low = -1e308;  // of integer, number and each of numbers
   double high = 1e308;
-  uint64_t multiple = 1;          // of integer: it is a multiple of this
-  size_t length = 0;              // of numbers: exactly so many; 0 for any
+  uint64_t multiple = 1;          // of integer: the value must be a multiple of this
+  size_t length = 0;              // of numbers: required count; 0 for any
   const char* choices = nullptr;  // of integer and text: the allowed values, separated by spaces
   const char* target = nullptr;   // of references
   const char* beside = nullptr;   // legal only together with this member
   const char* without = nullptr;  // illegal together with this member
   Fields inner = {};              // of object and objects; empty: any members
-  bool may_be_empty = false;      // of arrays: an empty one changes nothing
+  bool may_be_empty = false;      // of arrays: an empty one is allowed and has no effect
 };
 
 const Field* Fields::begin() const {
@@ -73,9 +73,9 @@ const Field* Fields::end() const {
 
 namespace properties {
 
-// Integers beyond 2^53 do not survive other JSON parsers (section 2.7).
+// Integers beyond 2^53 are not preserved by other JSON parsers (section 2.7).
 constexpr double largest_integer = 9007199254740992.0;
-// tinygltf holds the members of sparse accessors as int.
+// tinygltf stores the members of sparse accessors as int.
 constexpr double largest_int = 2147483647.0;
 constexpr const char* index_types = "5121 5123 5125";
 constexpr const char* component_types = "5120 5121 5122 5123 5125 5126";
@@ -231,7 +231,7 @@ constexpr Field document[] = {
 
 using nlohmann::json;
 
-// Walks a document beside the tables.
+// Checks a document against the tables.
 class SchemaWalk {
  public:
   SchemaWalk(const json& root, const std::string& file) : root_(root), file_(file) {}
@@ -320,7 +320,7 @@ std::string SchemaWalk::expectation(const Field& field) const {
          ", the number of " + field.target + ", not empty";
 }
 
-// The value alone, without its members.
+// Checks the value itself, without its members.
 bool SchemaWalk::fits(const json& value, const Field& field) const {
   const auto in_range = [&](const json& number) {
     return number.is_number() && number.get<double>() >= field.low &&

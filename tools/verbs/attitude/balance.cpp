@@ -1,4 +1,4 @@
-// photorque balance: the centre of mass from a recording, and the masses' moves that remove it.
+// photorque balance: centre of mass from a recording, and mass displacements that correct it.
 #include "tools/verbs/attitude/balance.h"
 
 #include "core/errors.h"

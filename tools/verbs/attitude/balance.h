@@ -1,4 +1,4 @@
-// The centre of mass from a recording, and the masses' moves.
+// Centre of mass from a recording, and mass displacements that correct it.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ struct BalanceOutcome {
   RunResult result;
 };
 
-// InputError unless there is one recording.
+// Throws InputError unless there is exactly one recording.
 BalanceOutcome run_balance(const RunOptions& options,
                            const std::vector<std::filesystem::path>& recordings);
 

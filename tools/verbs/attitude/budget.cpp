@@ -1,4 +1,4 @@
-// photorque budget: every disturbance torque at one state, ranked, beside the paper's figures.
+// photorque budget: every disturbance torque at one state, ranked, with the paper's figures.
 #include "tools/verbs/attitude/budget.h"
 
 #include <algorithm>

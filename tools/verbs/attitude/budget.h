@@ -12,6 +12,7 @@ struct BudgetRun {
   RunResult result;
 };
 
+// Computes all disturbance torques at the state of [budget]. Throws InputError for invalid input.
 BudgetRun run_budget(const RunOptions& options);
 
 }  // namespace photorque

@@ -11,7 +11,7 @@
 namespace photorque {
 namespace {
 
-// Poses found from images in a second: the centres are read from pixels, the pixels at hand.
+// Number of poses per second that are computed from images: exposure, reading and solution.
 double pace_1_s(const CameraStudy& study) {
   constexpr int images = 200;
   const WallTime wall;

@@ -1,4 +1,4 @@
-// photorque diagnose: missing physics of an experiment, from its recordings.
+// photorque diagnose: effects that are missing in an experiment, from its recordings.
 #include "tools/verbs/attitude/diagnose.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ std::vector<NamedRecording> read_all(const std::vector<fs::path>& paths,
   return all;
 }
 
-// The text with the changes of the command line.
+// The text with the overrides of the command line.
 std::string with_overrides(const std::string& text, const std::vector<std::string>& overrides) {
   if (overrides.empty()) return text;
   TomlDocument document(text, "");
@@ -56,7 +56,7 @@ std::string with_overrides(const std::string& text, const std::vector<std::strin
   return document.text();
 }
 
-// Whether the recordings are of light. InputError naming the first that is of another kind.
+// Whether the recordings are of light. Throws InputError for the first recording of another kind.
 bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs::path>& holdouts,
                   const RecordingOptions& reading) {
   const bool of_light = is_light_recording(recordings.front(), reading);
@@ -91,7 +91,7 @@ RecordingOptions reading_in(const Settings& root) {
   return options;
 }
 
-// The named columns that each recording lacks.
+// The named columns that are missing in each recording.
 template <typename... Recordings>
 std::vector<std::set<std::string>> absent_columns(const Recordings&... lists) {
   std::vector<std::set<std::string>> all;
@@ -113,7 +113,7 @@ Progress progress_on(const Console& console, const std::string& of) {
   return [&console, of](const std::string& what) { console.line("  " + of + what + " ..."); };
 }
 
-// Lamps and array of an experiment, and their recordings.
+// Lamps and array of an experiment with their recordings.
 struct LightInput {
   Experiment experiment;
   LightLab lab{experiment};
@@ -161,7 +161,7 @@ DiagnosisRun diagnose_light_recordings(const RunOptions& options, const Settings
           with_overrides(options.experiment_text(), options.all_overrides()), true};
 }
 
-// Curves of a module in sunlight: no scene is needed.
+// Diagnosis of current-voltage curves of a module in sunlight, which need no scene.
 DiagnosisRun diagnose_module_curves(const RunOptions& options, const Settings& root,
                                     const std::vector<fs::path>& paths,
                                     const std::vector<fs::path>& holdout_paths) {
@@ -210,7 +210,7 @@ DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::pa
           with_overrides(options.experiment_text(), options.overrides), false};
 }
 
-// Recordings by their content. A run of the array contains the motion of the platform, too.
+// Recordings by their content. A recording of the array contains the motion of the platform, too.
 struct Sorted {
   std::vector<fs::path> motion, light;
 };
@@ -267,7 +267,7 @@ std::string DiagnosisRun::report() const {
   return report_html(diagnosis, provenance, experiment.stem().string());
 }
 
-// A recording counts once, and one that was fitted cannot judge the fit.
+// Rejects repeated recordings, and held-out recordings that are also fitted.
 void require_each_once(const std::vector<fs::path>& recordings,
                        const std::vector<fs::path>& holdouts) {
   std::vector<fs::path> known;
@@ -349,7 +349,7 @@ struct Options : CommandOptions {
   std::optional<double> rate_Hz;             // of these: rows per second
 };
 
-// The name of the guessed experiment: "run1" for data/run1.csv.gz.
+// Name of the guessed experiment: "run1" for data/run1.csv.gz.
 std::string name_of_guess(const std::vector<std::filesystem::path>& guess) {
   std::filesystem::path name = guess.front().filename();
   while (name.has_extension()) name = name.stem();
@@ -413,7 +413,7 @@ void print_diagnosis(const Console& console, const Diagnosis& d) {
   for (const std::string& warning : d.warnings) console.line("  note: " + warning);
 }
 
-// All that is printed is an experiment too.
+// Writes the guessed experiment; the printed text is the same experiment.
 void write_guess(const Options& options) {
   const Console console = terminal(options);
   const std::filesystem::path file = options.out_folder() / (options.name + ".toml");

@@ -1,4 +1,4 @@
-// The missing effects between an experiment and its recordings.
+// Effects that are missing in an experiment, from its recordings.
 #pragma once
 
 #include <filesystem>
@@ -17,17 +17,19 @@ struct DiagnosisRun {
   Diagnosis diagnosis;
   Provenance provenance;
   std::filesystem::path experiment;
-  std::string text;       // of the experiment, with the changes of the command line
-  bool of_light = false;  // of scans, sweeps and runs instead of motion
+  std::string text;       // of the experiment, with the overrides of the command line
+  bool of_light = false;  // recordings are scans, sweeps and runs of light instead of motion
 
+  // Text of diagnosis.json.
   std::string json() const;
-  // The page of the findings, which needs no script.
+  // HTML page of the findings, without a script.
   std::string report() const;
-  // The improved experiment, as it would stand in a folder.
+  // Text of the improved experiment for a file in `folder`.
   std::string improved(const std::filesystem::path& folder) const;
 };
 
-// Recordings of motion, or of light and power: recognised by their headers. At least one.
+// Diagnoses recordings of motion, or of light and power, which are recognised by their headers. At
+// least one recording is required.
 DiagnosisRun run_diagnose(const RunOptions& options,
                           const std::vector<std::filesystem::path>& recordings,
                           const std::vector<std::filesystem::path>& holdouts,
@@ -38,8 +40,8 @@ DiagnosisRun run_diagnose(const RunOptions& options,
 std::string first_experiment(const std::vector<std::filesystem::path>& recordings,
                              const std::filesystem::path& file, const RecordingOptions& reading);
 
-// improved.toml, report.html with the text of `report`, diagnosis.json and, in the further formats,
-// figures (diagnosis_figures()) into a folder.
+// Writes improved.toml, report.html with the text of `report`, diagnosis.json and, in the
+// additional formats, figures (diagnosis_figures()) into a folder.
 void write_diagnosis(const DiagnosisRun& run, const std::string& report,
                      const std::filesystem::path& folder, const RunFormats& formats = {});
 

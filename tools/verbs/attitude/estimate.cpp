@@ -16,7 +16,7 @@
 namespace photorque {
 namespace {
 
-// Tables and plots of the second recording and later ones carry its number.
+// Appends a result. From the second recording on, names of tables and plots get its number.
 void append_numbered(Product& into, Product one, size_t number, size_t count) {
   if (count > 1) {
     const std::string end = "_" + std::to_string(number + 1);
@@ -40,7 +40,8 @@ RunFile file_of(const std::string& name, const std::vector<AttitudeEstimate>& es
           remark};
 }
 
-// Notes of the reader, one per line, without the first: the number of rows is printed elsewhere.
+// Notes of the reader, one per line, without the first line (the number of rows, which is printed
+// elsewhere).
 std::vector<std::string> notes_of(const RecordingReport& report) {
   std::vector<std::string> lines;
   std::istringstream text(report.text());

@@ -1,4 +1,4 @@
-// Attitude and rate from recordings, or from simulated runs, by filter and smoother.
+// Attitude and rate from recordings or simulated runs, by filter and smoother.
 #pragma once
 
 #include <filesystem>
@@ -14,12 +14,12 @@ namespace photorque {
 
 struct EstimateRun {
   EstimateStudy study;
-  // One for each recording, or one of a simulated run.
+  // One per recording, or one for a simulated run.
   struct Estimated {
     std::string name;
     Readings readings;
     EstimateResult result;
-    std::vector<std::string> notes;  // a line each
+    std::vector<std::string> notes;  // one per line
   };
   std::vector<Estimated> estimated;
   std::optional<ConsistencyResult> consistency;  // of simulated runs

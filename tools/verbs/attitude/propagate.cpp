@@ -1,4 +1,4 @@
-// photorque propagate: propagates the platform through its disturbances.
+// photorque propagate: motion of the platform under its disturbances.
 #include "tools/coupling/propagate.h"
 
 #include "tools/pages/pages.h"

@@ -1,4 +1,4 @@
-// photorque serve: the platform in real time beside hardware and programs.
+// photorque serve: the platform in real time, connected to hardware and programs.
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -18,7 +18,7 @@ constexpr double s_to_ns = 1e9;
 
 // Sets a real-time priority and locks the memory, so that it is never paged out.
 void take_priority(const Console& console, int priority) {
-  // Ordinary threads may otherwise be woken 50 microseconds late, to save power.
+  // Otherwise the system may wake ordinary threads 50 microseconds late to save power.
   ::prctl(PR_SET_TIMERSLACK, 1UL);
   if (priority == 0) return;
   sched_param wanted{};
@@ -49,9 +49,9 @@ void print_session(const Console& console, const Product& product) {
   }
 }
 
-// The commands that acted, for propagate.commands.
+// The applied commands as a recording for propagate.commands.
 Recording commands_recording(Schedule commands, double last_tick_s) {
-  // The last holds on; a recording has two rows at least.
+  // The last command continues to act. A recording needs at least two rows.
   if (commands.time_s.size() == 1 && last_tick_s > commands.time_s.back()) {
     commands.time_s.push_back(last_tick_s);
     commands.held.push_back(commands.held.back());
@@ -69,7 +69,7 @@ Recording commands_recording(Schedule commands, double last_tick_s) {
 }
 
 // Propagates the experiment tick by tick with a client ([serve]); prints the address before it
-// waits. The result holds what `propagate` gives, `commands.csv` and, of a paced run, the
+// waits. The result contains that of `propagate`, `commands.csv` and, for a paced run, the
 // statistics of its deadlines.
 RunResult serve_experiment(const RunOptions& options, const Console& console) {
   ServeSettings serve;
