@@ -34,4 +34,7 @@ inline constexpr double largest_distance_m = 1e12;
 inline constexpr double degree_rad = pi / 180.0;
 inline constexpr double arcsecond_rad = degree_rad / 3600.0;
 
+// Reference radius of the geomagnetic field model IGRF. Altitudes of orbits count from it.
+inline constexpr double reference_radius_of_earth_m = 6371.2e3;
+
 }  // namespace photorque

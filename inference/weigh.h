@@ -197,8 +197,8 @@ class Weighing {
                  held = static_cast<double>(joint.fit.samples) - fitted;
     result.chi2_per_sample = (joint.fit.chi2 - train.fit.chi2) / held;
     result.log_score = joint.log_evidence - train.log_evidence;
-    if constexpr (requires { expected_chi2_per_sample(train.fit, joint.fit); }) {
-      result.expected_chi2_per_sample = expected_chi2_per_sample(train.fit, joint.fit);
+    if constexpr (requires { predict_held_out(train.fit, joint.fit); }) {
+      result.expected_chi2_per_sample = predict_held_out(train.fit, joint.fit).chi2_per_sample;
     }
     if (!std::isfinite(result.chi2_per_sample)) {
       result.sigma = limits_.noise.excess_unknown;

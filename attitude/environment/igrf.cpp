@@ -9,7 +9,6 @@
 namespace photorque {
 namespace {
 
-constexpr double reference_radius_m = 6371.2e3;  // of the expansion and of eq. 25
 constexpr double wgs84_semi_major_m = 6378137.0;
 constexpr double wgs84_flattening = 1.0 / 298.257223563;
 constexpr double first_epoch = 1900.0;
@@ -27,6 +26,7 @@ struct CoefficientRow {
 
 constexpr CoefficientRow coefficient_rows[] = {
 #include "attitude/environment/igrf14_coefficients.inc"
+#include "core/constants.h"
 };
 
 double at_year(const CoefficientRow& row, double decimal_year) {
@@ -54,7 +54,7 @@ GeomagneticModel::GeomagneticModel(double decimal_year) {
 Vec3 GeomagneticModel::north_east_down_T(const GeocentricPosition& position) const {
   const double c = std::cos(position.colatitude_rad);
   const double s = std::sin(position.colatitude_rad);
-  const double ratio = reference_radius_m / position.radius_m;
+  const double ratio = reference_radius_of_earth_m / position.radius_m;
   std::array<double, count> P{}, D{}, Q{};
   P[0] = 1.0;
   std::array<double, degree + 1> radial{};

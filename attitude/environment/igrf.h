@@ -8,6 +8,7 @@
 
 #include <array>
 
+#include "core/constants.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -22,7 +23,7 @@ struct GeodeticPosition {
 
 // Distance from the Earth's centre, angle from the north pole in [0, π], longitude to the east.
 struct GeocentricPosition {
-  double radius_m = 6371.2e3;
+  double radius_m = reference_radius_of_earth_m;
   double colatitude_rad = 0.0;
   double longitude_rad = 0.0;
 };

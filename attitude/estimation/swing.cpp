@@ -107,8 +107,8 @@ RobustResidual robust_residual(Eigen::MatrixXd law, const Eigen::VectorXd& value
         values -
         law * least_squares(weight.asDiagonal() * law, weight.cwiseProduct(values), alike).solution;
     const Eigen::VectorXd sizes = result.left.cwiseAbs();
-    // The median of |x| of a Gaussian is 0.6745 σ.
-    const double scatter = std::max(upper_median({sizes.begin(), sizes.end()}) / 0.6745, 1e-300);
+    const double scatter =
+        std::max(upper_median({sizes.begin(), sizes.end()}) / normal_median, 1e-300);
     result.off = result.left.cwiseQuotient(least.cwiseMax(scatter));
     weight = (1.0 - (result.off / biweight).array().square()).max(0.0);
   }

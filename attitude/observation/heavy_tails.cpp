@@ -90,8 +90,7 @@ double robust_level(const std::vector<Deviations>& runs) {
     for (const double x : run.size) sizes.push_back(std::abs(x));
   }
   if (sizes.empty()) return 0.0;
-  // The median of |x| of a normal distribution is 0.6745 σ.
-  return upper_median(std::move(sizes)) / 0.6745;
+  return upper_median(std::move(sizes)) / normal_median;
 }
 
 bool are_independent(const std::vector<Deviations>& runs, double level) {

@@ -125,16 +125,15 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
     collect_steps(x, steps);
   }
   if (windows < fewest) return std::nullopt;
-  // The median of |x| of a Gaussian is 0.6745 σ.
   const bool moves = 2 * sizes[lowest_order].size() > windows;
-  double level = moves ? upper_median(sizes[lowest_order]) / 0.6745 : 0.0;
+  double level = moves ? upper_median(sizes[lowest_order]) / normal_median : 0.0;
   // White noise gives the same level at every order. If the next order gives a much lower one, the
   // present level contains motion that the readings resolve too coarsely. With six readings per
   // period the ratio is 0.53.
   constexpr double quieter = 0.7;
   for (size_t order = lowest_order + 1; order <= highest_order; ++order) {
     if (sizes[order].size() < fewest) break;
-    const double next = upper_median(sizes[order]) / 0.6745;
+    const double next = upper_median(sizes[order]) / normal_median;
     if (!(next < quieter * level)) break;
     level = next;
   }

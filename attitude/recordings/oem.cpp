@@ -7,6 +7,7 @@
 
 #include "attitude/environment/environment.h"
 #include "attitude/recordings/kvn.h"
+#include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/parse.h"
 
@@ -14,7 +15,6 @@ namespace photorque {
 namespace {
 
 constexpr double km_m = 1e3;
-constexpr double least_distance_m = 6371.2e3;
 constexpr double beside_s = 60.0;         // permitted extrapolation at the ends of an ephemeris
 constexpr double max_uncertainty = 1e-3;  // of the interpolation, relative to the distance
 constexpr double same_instant_s = 1e-3;
@@ -158,7 +158,7 @@ struct OrbitEphemeris::Reader {
     if (!first) first = time;
     State state{time.seconds_since(*first), km_m * Vec3(v[0], v[1], v[2]),
                 km_m * Vec3(v[3], v[4], v[5]), row.line};
-    if (!(state.position_m.norm() > least_distance_m)) {
+    if (!(state.position_m.norm() > reference_radius_of_earth_m)) {
       throw error(row.line, "", "a distance of " + shortest(state.position_m.norm() / km_m) + " km",
                   "kilometres from the Earth's centre, above its surface");
     }

@@ -13,4 +13,7 @@ inline double upper_median(std::vector<double> values) {
   return *middle;
 }
 
+// The median of the magnitude of a normal variable, in standard deviations.
+inline constexpr double normal_median = 0.6745;
+
 }  // namespace photorque

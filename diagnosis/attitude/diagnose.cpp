@@ -9,6 +9,7 @@
 #include "attitude/estimation/swing.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "diagnosis/attitude/answer.h"
 #include "diagnosis/attitude/empirical_torque.h"
 #include "diagnosis/attitude/findings.h"
@@ -117,7 +118,7 @@ void report_gains_over_segments(const Answer& answer, Diagnosis& d) {
   if (!answer.beside) return;
   for (size_t i = 0; i < d.effects.size(); ++i) {
     d.warnings.push_back(
-        written("%s: %zu segments, each predicted from the others, are predicted "
+        printed("%s: %zu segments, each predicted from the others, are predicted "
                 "better with it than without it by %.1f standard errors",
                 d.effects[i].kind.c_str(), answer.beside->segments, answer.beside->sigma[i]));
   }
@@ -133,14 +134,14 @@ void warn_of_weak_holdout(Diagnosis& d) {
   constexpr double as_well = 0.9, too_quiet_sigma = -5.0;
   const double before = d.holdout->chi2_per_sample_before, after = d.holdout->chi2_per_sample_after;
   if (!d.effects.empty() && after > as_well * before) {
-    d.warnings.push_back(written(
+    d.warnings.push_back(printed(
         "the held-out data do not test the names: the nominal model predicts them as well (χ² per "
         "sample %.3g, with the names %.3g)",
         before, after));
   }
   const double sigma = (after - 1.0) * std::sqrt(0.5 * static_cast<double>(d.holdout->samples));
   if (sigma < too_quiet_sigma) {
-    d.warnings.push_back(written(
+    d.warnings.push_back(printed(
         "the held-out data scatter less than the noise used in the fit (χ² per sample %.3g, %.0f "
         "standard errors below 1): the stated noise is too large, or an effect was counted as "
         "noise",

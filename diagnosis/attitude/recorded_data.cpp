@@ -14,6 +14,7 @@
 #include "attitude/observation/noise_search.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
+#include "core/text/format.h"
 #include "diagnosis/attitude/holdout.h"
 
 namespace photorque {
@@ -104,7 +105,7 @@ void split_commanded_runs(const std::string& name, const Platform& platform, siz
     }
     if (count > 1) {
       warnings.push_back(
-          written("%s: commanded forces may depend on the motion: %zu "
+          printed("%s: commanded forces may depend on the motion: %zu "
                   "segments, each with its own initial state",
                   name.c_str(), count));
     }
@@ -324,7 +325,7 @@ InstrumentFinding level_finding(int k, const FoundNoise& found, double stated) {
   const double value = found.noise.level / unit;
   return {
       channel_traits(k).name, "noise_level", value, found.level_sigma * value,
-      written("the noise of %s is not what the experiment states: %.3g %s were found in the "
+      printed("the noise of %s is not what the experiment states: %.3g %s were found in the "
               "recording and used, %.3g are stated",
               channel_traits(k).name_in_text, value, k < 3 ? "arcsec" : "rad/s", stated / unit)};
 }
@@ -333,18 +334,18 @@ InstrumentFinding colour_finding(int k, const FoundNoise& found) {
   const bool all = !(found.noise.coloured < 1.0);
   return {
       channel_traits(k).name, "noise_correlation_time_s", found.noise.time_s, found.time_sigma_s,
-      written(
+      printed(
           "the noise of %s is correlated over %.3g s%s: neighbouring readings count for "
           "less",
           channel_traits(k).name_in_text, found.noise.time_s,
-          all ? "" : written(" (%.0f %% of its variance)", 100.0 * found.noise.coloured).c_str())};
+          all ? "" : printed(" (%.0f %% of its variance)", 100.0 * found.noise.coloured).c_str())};
 }
 
 InstrumentFinding tail_finding(int k, const HeavyTail& tail) {
   const double unit = k < 3 ? arcsecond_rad : 1.0;
   return {
       channel_traits(k).name, "noise_degrees_of_freedom", tail.degrees, tail.degrees_sigma,
-      written("the noise of %s has heavy tails (Student's t with %.2g degrees of freedom, scale "
+      printed("the noise of %s has heavy tails (Student's t with %.2g degrees of freedom, scale "
               "%.3g %s): readings far from their neighbours count for less",
               channel_traits(k).name_in_text, tail.degrees, tail.scale / unit,
               k < 3 ? "arcsec" : "rad/s")};
@@ -395,7 +396,7 @@ bool robustify_noise(const Fit& near, const Thresholds& limits, RecordedData& da
   }
   if (const long long all = in_bursts + held_in_bursts; all > 0) {
     data.outliers += all;
-    data.warnings.push_back(written("%lld readings in bursts of large errors are left out", all));
+    data.warnings.push_back(printed("%lld readings in bursts of large errors are left out", all));
   }
   return changed;
 }
@@ -476,7 +477,7 @@ void report_bias_drift(const BiasHistory& history, std::vector<InstrumentFinding
     const double off = history.bias_rad_s[at][axis], sigma = history.sigma_rad_s[at][axis];
     findings.push_back(
         {channel_traits(3 + axis).name, "bias_drift_rad_s", off, sigma,
-         written("the bias of the gyro about body %c drifts: in %s it is (%.3g ± %.1g) rad/s off "
+         printed("the bias of the gyro about body %c drifts: in %s it is (%.3g ± %.1g) rad/s off "
                  "its mean at %.0f s; the drift is taken out",
                  'x' + axis, name.c_str(), off, sigma, history.time_s[at])});
   }

@@ -12,14 +12,6 @@
 
 namespace photorque {
 
-// Formats numbers like printf; at most 499 characters.
-template <typename... Values>
-std::string written(const char* format, Values... values) {
-  char text[500];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 struct RecordedData {
   std::vector<Observation> train, held;
   int64_t outliers = 0;  // number of dropped readings

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/numerics/linear.h"
+#include "core/numerics/median.h"
 
 namespace photorque {
 namespace {
@@ -97,7 +98,7 @@ std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::Vect
 }
 
 std::vector<size_t> rows_within_noise(const LightRun& run, const Eigen::VectorXd& residuals) {
-  constexpr double stray_sigma = 5.0, from_all_sigma = 3.0, median_of_normal = 0.6745;
+  constexpr double stray_sigma = 5.0, from_all_sigma = 3.0;
   const LightRecording& r = run.recording();
   const size_t channels = run.channels().size();
   const auto residual = [&](size_t row, size_t channel) {
@@ -118,7 +119,7 @@ std::vector<size_t> rows_within_noise(const LightRun& run, const Eigen::VectorXd
     }
     // Near unmodelled effects neighbours deviate as well. By chance the median size of eight
     // neighbours rarely exceeds its expected value by half.
-    const double level = std::max(1.0, median_of(std::move(sizes)) / (1.5 * median_of_normal));
+    const double level = std::max(1.0, median_of(std::move(sizes)) / (1.5 * normal_median));
     return least > from_all_sigma &&
            std::abs(own - median_of(std::move(others))) > stray_sigma * level;
   };

@@ -65,16 +65,4 @@ double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covarian
   return result + at();
 }
 
-double expected_chi2_per_sample(const Fit& train, const Fit& joint) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (!train.hessian.all_finite() || !joint.hessian.all_finite()) return unknown;
-  const Eigen::MatrixXd known = train.hessian.shared_information(),
-                        of_all = joint.hessian.shared_information();
-  if (known.rows() != of_all.rows()) return unknown;
-  const double held = static_cast<double>(joint.samples - train.samples);
-  const double carried = posterior_of(known).cwiseProduct(of_all - known).sum();
-  // The two matrices are from different fits, so a difference of zero may be slightly negative.
-  return 1.0 + std::max(0.0, carried) / held;
-}
-
 }  // namespace photorque::inference

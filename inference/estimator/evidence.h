@@ -52,15 +52,8 @@ struct Predictive {
   // Natural logarithm of the probability of the held-out runs given the train runs, up to a
   // constant that is common to all trials.
   double log_score = 0.0;
-  // For the fixed fitted parameters; see expected_chi2_per_sample().
+  // For the fixed fitted parameters; see predict_held_out().
   double expected_chi2_per_sample = std::numeric_limits<double>::quiet_NaN();
 };
-
-// Expected χ² per held-out number, where each held-out run starts from its measured initial
-// conditions: 1 from noise, plus tr(G C)/n from the errors of the parameters. C: the posterior of
-// the shared parameters of `train`; G: the information of the held-out runs about them, from
-// `joint`, the fit of the same model to all runs; n: the number of held-out numbers. First order;
-// NaN where a matrix is not finite.
-double expected_chi2_per_sample(const Fit& train, const Fit& joint);
 
 }  // namespace photorque::inference

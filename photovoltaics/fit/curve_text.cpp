@@ -51,7 +51,7 @@ std::vector<std::string_view> split_header(std::string_view line, char separator
 
 // Marks of a missing reading, also those of SCPI instruments for overflow and no number.
 bool is_missing(std::string_view cell) {
-  const std::string text = lower(cell);
+  const std::string text = lower_case(cell);
   for (const std::string_view mark : {"", "nan", "na", "n/a", "inf", "+inf", "-inf", "ol", "-ol",
                                       "overload", "--", "-", "null"}) {
     if (text == mark) return true;
@@ -83,7 +83,7 @@ std::string_view known_as(std::string_view cell, const CurveColumns& columns) {
 std::optional<Header> instrument_header(Header header, const std::vector<std::string_view>& cells) {
   std::optional<size_t> reading, source;
   for (size_t i = 0; i < cells.size(); ++i) {
-    const std::string name = lower(unquoted(cells[i]));
+    const std::string name = lower_case(unquoted(cells[i]));
     if (!reading && name == "reading") reading = i;
     if (!source && (name == "source value" || name == "value" || name == "source")) source = i;
   }
@@ -142,7 +142,7 @@ bool is_of_curve(std::string_view line, const Header& header) {
       "no",    "nr",    "number",   "id",        "rep",      "/",       "in",
       "watts", "watt",  "run",      "direction", "status",   "stat",    "res"};
   for (const std::string_view cell : split_header(line, header.separator)) {
-    std::string text = lower(unquoted(cell));
+    std::string text = lower_case(unquoted(cell));
     if (text.empty() || named(text).column != columns) continue;
     std::ranges::replace(text, '_', ' ');
     text = text.substr(0, text.find_first_of(" ([/.", 1));
@@ -254,7 +254,7 @@ class Reader {
       if (words.empty()) continue;
       const auto number = number_in(words[0]);
       std::optional<Unit> unit = name.unit;
-      if (words.size() > 1 && !unit) unit = unit_named(name.column, lower(words[1]));
+      if (words.size() > 1 && !unit) unit = unit_named(name.column, lower_case(words[1]));
       if (!unit && name.column == irradiance && words.size() == 1) unit = Unit{"", 1.0, 0.0};
       if (!number || !unit) continue;
       stated_[name.column] = (*number + unit->offset) * unit->to_SI;
@@ -265,7 +265,7 @@ class Reader {
   void assign_instrument(const std::vector<std::string_view>& cells) {
     const auto unit_after = [&](Column column) -> std::optional<Unit> {
       for (size_t i = *header_.place[column] + 1; i < cells.size(); ++i) {
-        const std::string unit = lower(unquoted(cells[i]));
+        const std::string unit = lower_case(unquoted(cells[i]));
         if (unit_named(column == voltage ? current : voltage, unit)) return std::nullopt;
         if (const auto found = unit_named(column, unit)) return found;
       }
@@ -286,7 +286,7 @@ class Reader {
     bool all = true;
     for (const Column column : {voltage, current, irradiance, temperature}) {
       if (!header_.place[column] || *header_.place[column] >= cells.size()) continue;
-      std::string text = lower(unquoted(cells[*header_.place[column]]));
+      std::string text = lower_case(unquoted(cells[*header_.place[column]]));
       std::erase_if(text, [](char c) { return c == '(' || c == ')' || c == '[' || c == ']'; });
       const auto unit = unit_named(column, text);
       all = all && unit.has_value();
@@ -314,7 +314,7 @@ class Reader {
     // A cell may contain its unit: "0.52 V".
     const size_t digits = text.find_last_of("0123456789.") + 1;
     if (digits > 0 && digits < text.size()) {
-      const auto stated = unit_named(column, lower(trimmed(text.substr(digits))));
+      const auto stated = unit_named(column, lower_case(trimmed(text.substr(digits))));
       if (stated) text = text.substr(0, digits);
       unit = stated.value_or(unit);
     }

@@ -227,12 +227,6 @@ Named named_without_brackets(std::string cell) {
 
 }  // namespace
 
-std::string lower(std::string_view text) {
-  std::string small(text);
-  for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return small;
-}
-
 std::optional<Unit> unit_named(Column column, std::string_view name) {
   for (const Unit& unit : units_of(column)) {
     if (unit.name == name) return unit;
@@ -241,7 +235,7 @@ std::optional<Unit> unit_named(Column column, std::string_view name) {
 }
 
 Named named(std::string_view header_cell) {
-  const std::string cell = lower(trimmed(header_cell));
+  const std::string cell = lower_case(trimmed(header_cell));
   const size_t open = cell.find_first_of("([");
   if (open == std::string::npos) {
     // Only a small t is a time: T is a temperature.

@@ -14,8 +14,6 @@ struct Unit {
   double to_SI, offset;  // SI = (value + offset) · to_SI
 };
 
-std::string lower(std::string_view text);
-
 // The unit of a column by its name in small letters; empty if it is unknown.
 std::optional<Unit> unit_named(Column column, std::string_view name);
 

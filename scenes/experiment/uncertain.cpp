@@ -15,20 +15,6 @@ std::optional<double> plain_number(const SettingsNode& node) {
   return std::nullopt;
 }
 
-// A number or an array of numbers; empty for other values.
-std::vector<double> plain_numbers(const SettingsNode& node) {
-  if (const auto one = plain_number(node)) return {*one};
-  std::vector<double> all;
-  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
-  if (array == nullptr) return {};
-  for (const SettingsNode& item : *array) {
-    const auto one = plain_number(item);
-    if (!one) return {};
-    all.push_back(*one);
-  }
-  return all;
-}
-
 // Whether a table is { value = …, sigma = … }. No other table of lamps, arrays or attitudes has
 // these keys, so a table with only one of them, or with another key, is an error.
 bool is_value_with_sigma(const SettingsNode::Table& table, const std::string& path) {
@@ -75,6 +61,19 @@ void take(SettingsNode& node, const std::string& path, std::vector<UncertainKey>
 }
 
 }  // namespace
+
+std::vector<double> plain_numbers(const SettingsNode& node) {
+  if (const auto one = plain_number(node)) return {*one};
+  std::vector<double> all;
+  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
+  if (array == nullptr) return {};
+  for (const SettingsNode& item : *array) {
+    const auto one = plain_number(item);
+    if (!one) return {};
+    all.push_back(*one);
+  }
+  return all;
+}
 
 std::vector<UncertainKey> uncertain_keys(const std::filesystem::path& path, const std::string& text,
                                          std::span<const std::string> overrides) {

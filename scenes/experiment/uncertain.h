@@ -17,6 +17,9 @@ struct UncertainKey {
   bool is_array = false;             // true: an array; false: one number
 };
 
+// A number or an array of numbers; empty for other values.
+std::vector<double> plain_numbers(const SettingsNode& node);
+
 // Uncertain keys of an experiment's text with its overrides.
 std::vector<UncertainKey> uncertain_keys(const std::filesystem::path& path, const std::string& text,
                                          std::span<const std::string> overrides);

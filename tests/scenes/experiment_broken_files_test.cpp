@@ -204,5 +204,12 @@ TEST(BrokenScene, ThatIsNestedDeeplyNamesNoFiles) {
   EXPECT_TRUE(files_named_in("/nowhere/model.gltf", model).empty());
 }
 
+TEST(NamedFiles, OfAModelWithACapitalEndingAreFound) {
+  const auto buffer = test_file("capital.bin", "b");
+  EXPECT_THAT(files_named_in(buffer.parent_path() / "CAPITAL.GLTF",
+                             R"({"buffers": [{"uri": "capital.bin"}]})"),
+              testing::ElementsAre(buffer));
+}
+
 }  // namespace
 }  // namespace photorque

@@ -3,36 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/experiment/uncertain.h"
 #include "tools/sweeps/values.h"
 
 namespace photorque {
-namespace {
-
-double number_of_node(const SettingsNode& node) {
-  if (const auto* whole = std::get_if<int64_t>(&node.value)) return static_cast<double>(*whole);
-  if (const auto* real = std::get_if<double>(&node.value)) return *real;
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
-// A number or an array of numbers; empty for other values.
-std::vector<double> numbers_of_node(const SettingsNode& node) {
-  std::vector<double> all;
-  if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (const SettingsNode& item : *items) all.push_back(number_of_node(item));
-  } else {
-    all.push_back(number_of_node(node));
-  }
-  if (std::ranges::any_of(all, [](double v) { return std::isnan(v); })) all.clear();
-  return all;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Tolerances::Tolerances(const BuiltCopies& plan, const RunIdentity& identity) : identity_(identity) {
   size_t dimension = 0;
   for (const Tolerance& tolerance : plan.tolerances) {
     const SettingsNode start = identity.value({}, tolerance.key);
-    const std::vector<double> values = numbers_of_node(start);
+    const std::vector<double> values = plain_numbers(start);
     if (values.empty()) {
       throw InputError({}, "sweep.tolerance.key", '"' + tolerance.key + "\": " + describe(start),
                        "a key of a number or of numbers");
@@ -58,7 +39,7 @@ Changes Tolerances::built(const Changes& design, size_t copy) const {
       continue;
     }
     const SettingsNode start = identity_.value(design, tolerance.key);
-    const std::vector<double> values = numbers_of_node(start);
+    const std::vector<double> values = plain_numbers(start);
     std::string text;
     for (size_t i = 0; i < std::min(values.size(), drawn.off.size()); ++i) {
       const double width = tolerance.width * (tolerance.relative ? values[i] : 1.0);

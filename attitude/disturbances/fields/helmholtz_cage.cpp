@@ -12,6 +12,7 @@
 // environment. The field is assumed to be uniform over the platform.
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/kind.h"
+#include "core/constants.h"
 #include "core/text/parse.h"
 
 namespace photorque::kinds::helmholtz_cage {
@@ -72,9 +73,9 @@ TimeSeries read_wanted_field_T(const Settings& settings) {
   }
   if (settings.has(key::orbit)) {
     const Settings s = settings.get(key::orbit);
-    const CircularOrbit orbit{6371.2e3 + s.get(key::altitude), s.get(key::inclination),
-                              s.get(key::ascending_node), s.get(key::phase),
-                              s.get(key::greenwich_angle)};
+    const CircularOrbit orbit{reference_radius_of_earth_m + s.get(key::altitude),
+                              s.get(key::inclination), s.get(key::ascending_node),
+                              s.get(key::phase), s.get(key::greenwich_angle)};
     const double date_year = s.get(key::date_year);
     const double duration_s = s.get(key::duration);
     const double interval_s = s.get(key::interval);

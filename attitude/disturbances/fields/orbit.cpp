@@ -59,8 +59,6 @@ constexpr Vec3Key sun_direction("sun_direction",
                                 {.usually = "that of `[environment.sun]`, else always light"});
 }  // namespace key
 
-constexpr double mean_radius_m = 6371.2e3;
-
 class Circle {
  public:
   explicit Circle(const CircularOrbit& orbit) : orbit_(orbit) {}
@@ -122,7 +120,7 @@ class Orbit final : public LawOf<Orbit<Path>> {
   Lanes light(const Lanes& time_s) const {
     return each_lane(time_s, [this](double t_s) {
       return sunlit_fraction(path_.position_m(t_s), astronomical_unit_m * sun_->at(t_s)[0],
-                             mean_radius_m);
+                             reference_radius_of_earth_m);
     });
   }
 
@@ -141,7 +139,7 @@ Disturbance read_circle(const Settings& settings, const DisturbanceContext& cont
     throw settings.error(key::epoch, "a calendar time of a circle",
                          "`ephemeris` beside it, or `phase_deg`");
   }
-  const CircularOrbit orbit{mean_radius_m + settings.get(key::altitude),
+  const CircularOrbit orbit{reference_radius_of_earth_m + settings.get(key::altitude),
                             settings.get(key::inclination), settings.get(key::ascending_node),
                             settings.get(key::phase), settings.get(key::greenwich_angle)};
   std::optional<TimeSeries> field_T;

@@ -19,7 +19,6 @@
 namespace photorque::kinds::planet_light {
 namespace {
 
-constexpr double mean_radius_of_planet_m = 6371.2e3;
 constexpr ScalarKey planet_factor("scale", 1.0, {}, "factor on the torque");
 
 namespace key {
@@ -82,8 +81,8 @@ class PlanetLight final : public TorqueLaw<PlanetLight> {
         continue;
       }
       const double distance_m = std::cbrt(earth_gravitation_m3_s2 / gradient_1_s2[i]);
-      if (!(distance_m > 1.001 * mean_radius_of_planet_m)) return sum;  // on the ground
-      parts[lane] = planet_parts(mean_radius_of_planet_m, distance_m);
+      if (!(distance_m > 1.001 * reference_radius_of_earth_m)) return sum;  // on the ground
+      parts[lane] = planet_parts(reference_radius_of_earth_m, distance_m);
     }
     for (size_t k = 0; k < parts[0].size(); ++k) {
       Vec3Of<Lanes> towards;

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "core/parallel.h"
+#include "inference/held_out.h"
 #include "inference/whiteness.h"
 
 namespace photorque {
@@ -373,7 +374,7 @@ void decide_on(const ModuleFitter& fitter, const ModuleData& data, const Thresho
     inference::Predictive p;
     p.chi2_per_sample = (joint.fit.chi2 - train.fit.chi2) / held;
     p.log_score = joint.log_evidence - train.log_evidence;
-    p.expected_chi2_per_sample = inference::expected_chi2_per_sample(train.fit, joint.fit);
+    p.expected_chi2_per_sample = inference::predict_held_out(train.fit, joint.fit).chi2_per_sample;
     p.sigma = (p.chi2_per_sample - 1.0) /
               std::sqrt(2.0 / held + 2.0 / static_cast<double>(train.fit.samples));
     train.significance.clear();

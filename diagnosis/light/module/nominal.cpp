@@ -40,8 +40,7 @@ double noise_of(const std::vector<double>& current_A) {
   for (size_t i = 2; i < current_A.size(); ++i) {
     second.push_back(std::abs(current_A[i] - 2.0 * current_A[i - 1] + current_A[i - 2]));
   }
-  constexpr double of_median = 0.6745;  // median over standard deviation of a normal variable
-  return upper_median(std::move(second)) / of_median / std::sqrt(6.0);
+  return upper_median(std::move(second)) / normal_median / std::sqrt(6.0);
 }
 
 // Logarithms of the parameters of one cell from the fit of a whole device.

@@ -1,4 +1,5 @@
 #include "diagnosis/light/module/report.h"
+#include "core/numerics/median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -388,8 +389,7 @@ void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun
   for (size_t i = 0; i < ratio.size(); ++i) off.push_back(ratio[i] - slope * order[i]);
   const double level = median_of(off);
   for (double& x : off) x = std::abs(x - level);
-  constexpr double of_median = 0.6745;  // median over standard deviation of a normal variable
-  const double scatter = median_of(off) / of_median;
+  const double scatter = median_of(off) / normal_median;
   const auto at = [&](double i) { return std::exp(level + slope * i - unit); };
   // Standard error of the slope of a line through n points with unit spacing: scatter √(12/n³).
   const auto n = static_cast<double>(ratio.size());
