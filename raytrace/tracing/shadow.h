@@ -74,6 +74,8 @@ inline constexpr int shadow_batch = 256;
 // Sets lit[i] to 1 where nothing of the scene crosses ray i, else to 0.
 void find_shadows(const TraceableScene& scene, std::span<const ShadowRay> rays,
                   std::span<uint8_t> lit);
+// Likewise for any number of rays.
+std::vector<uint8_t> unshadowed(const TraceableScene& scene, std::span<const ShadowRay> rays);
 
 // Ray offset of a shadow ray above its surface, and a radius that contains the whole scene as
 // seen from any point of it.

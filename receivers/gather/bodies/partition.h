@@ -95,6 +95,10 @@ struct Levels {
   uint32_t finest = 0, along_traces = 0;
 };
 
+// Lines within this fraction of the scene's size are in a facet's plane; pieces below this fraction
+// of the total area are not cut further.
+inline constexpr double plane_rounding = 1e-7, least_piece = 1e-6;
+
 // A facet with the lines on it at which something begins or ends for it.
 class Screen {
  public:
