@@ -18,7 +18,9 @@ namespace photorque {
 // - Elevation and azimuth over a whole sphere: "torque_x_NAME_from_plus_z" … and
 //   "…_from_minus_z", the halves of the sphere as seen from outside, in Lambert's equal areas.
 // Between the nodes: trigonometric in the angle around, cubic in the other, through the poles.
-std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name);
+// `source`, in titles: light or gas.
+std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name,
+                            const std::string& source = "light");
 
 // An angle as stated: −60 and not −60.00000000000001.
 double stated_deg(double angle_rad);
@@ -31,6 +33,7 @@ double stated_deg(double angle_rad);
 // - the pictures of polar_maps(),
 // - for a single heading or azimuth: the plots "force_NAME" and "torque_NAME" over the tilt or
 //   elevation.
-Product wrench_table_product(const WrenchTable& table, const std::string& name);
+Product wrench_table_product(const WrenchTable& table, const std::string& name,
+                             const std::string& source = "light");
 
 }  // namespace photorque

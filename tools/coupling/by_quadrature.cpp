@@ -14,7 +14,7 @@ constexpr size_t torque = 3;  // the first of its components
 
 class SunlitDirections final : public LightDirections {
  public:
-  SunlitDirections(const OpticalRun& run, const SunLight& sun,
+  SunlitDirections(const OpticalRun& run, const DistantSource& sun,
                    std::unique_ptr<const SunlitBody> body, int threads)
       : run_(run), sun_(sun), body_(std::move(body)) {
     // Light with a small torque against the largest is not followed further.
@@ -118,14 +118,14 @@ class SunlitDirections final : public LightDirections {
   }
 
   const OpticalRun& run_;
-  const SunLight& sun_;
+  const DistantSource& sun_;
   std::unique_ptr<const SunlitBody> body_;
   double tolerance_N_m_ = 0.0;
 };
 
 }  // namespace
 
-std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const SunLight& sun,
+std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const DistantSource& sun,
                                                    const Vec3& about_body_m, int threads) {
   // Fewer meetings than the default are asked of rays alone.
   const ExperimentFile& file = run.experiment().file;

@@ -1,5 +1,5 @@
-// torque-map over directions of light: the table of a body in sunlight, and ways to find force and
-// torque at one direction after another.
+// torque-map over directions of light or wind: the table of a body in sunlight or in a gas flow,
+// and ways to find force and torque at one direction after another.
 #pragma once
 
 #include <memory>
@@ -19,22 +19,22 @@ struct DirectionMap {
   RunResult result;
 };
 
-// Force and torque with the Sun at every direction of [torque_map]: by quadrature where the scene
-// is for that, else by rays. When the directions cover the sphere, the wrench per pressure is a
-// file of the result in the SPAD layout. The experiment's only source must be a sun. Directions are
-// shared out over `threads` (0: all); `run` itself is best made for one. `watch` has each traced
-// for it. With a checkpoint, finished nodes are saved there periodically, and the run resumes from
-// it.
+// Force and torque with the Sun, or a gas that comes, at every direction of [torque_map]: sunlight
+// by quadrature where the scene is for that, else by rays. When the directions cover the sphere,
+// the wrench per pressure is a file of the result in the SPAD layout. The experiment's only source
+// must be a sun, or it has a gas flow. Directions are shared out over `threads` (0: all); `run`
+// itself is best made for one. `watch` has each traced for it, of sunlight only. With a checkpoint,
+// finished nodes are saved there periodically, and the run resumes from it.
 DirectionMap map_over_directions(const Console& console, const OpticalRun& run, int threads,
                                  const NodeWatch& watch = {}, CheckpointFile* checkpoint = nullptr);
 
-// The experiment's sun: tables may be normalised by its pressure.
-struct SunLight {
+// The experiment's sun or gas: tables may be normalised by its pressure.
+struct DistantSource {
   Vec3 towards_lab;
-  double pressure_Pa = 0.0;  // irradiance over the speed of light
+  double pressure_Pa = 0.0;  // irradiance over the speed of light; dynamic pressure
 
-  // The attitude at which the Sun is in the direction `towards_body`. It depends on nothing else,
-  // so that equal directions with different azimuths give equal results.
+  // The attitude at which the source is in the direction `towards_body`. It depends on nothing
+  // else, so that equal directions with different azimuths give equal results.
   RigidTransform lab_from_body(const Vec3& towards_body) const;
 };
 
@@ -66,16 +66,20 @@ class LightDirections {
 
 // Tables by ray tracing; direct light is integrated over the surfaces if possible. Over a whole
 // sphere, light after the first contact is smoothed.
-std::unique_ptr<LightDirections> traced_directions(const OpticalRun& run, const SunLight& sun,
+std::unique_ptr<LightDirections> traced_directions(const OpticalRun& run, const DistantSource& sun,
                                                    const Vec3& about_body_m);
 
 // Tables by quadrature (receivers/gather/bodies/sunlit_body.h). Null if the scene does not permit
 // it, or if the experiment requires rays.
-std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const SunLight& sun,
+std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const DistantSource& sun,
                                                    const Vec3& about_body_m, int threads);
 
+// Tables of a gas flow (receivers/gather/bodies/body_in_flow.h), at the pressure of `source`.
+std::unique_ptr<LightDirections> flow_directions(const OpticalRun& run, const DistantSource& source,
+                                                 const Vec3& about_body_m);
+
 // Directions that no table has, evenly over the sphere, in which a method is compared with rays.
-std::vector<RigidTransform> fresh_directions(size_t count, const SunLight& sun);
+std::vector<RigidTransform> fresh_directions(size_t count, const DistantSource& sun);
 
 // The longest of these torques [N m].
 double largest_torque_N_m(const WrenchTable& table);
