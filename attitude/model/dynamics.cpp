@@ -211,6 +211,8 @@ EvaluationContext<T> Dynamics::begin(const T& time_s, const Command& command, co
           .up_lab = environment.up_lab.cast<T>(),
           .gravity_gradient_1_s2 = environment.gravity_gradient_1_s2,
           .illumination = 1.0,
+          .orbit_position_lab_m = zero,
+          .orbit_velocity_lab_m_s = zero,
           .command_body_N_m = command.torque_body_N_m.template cast<T>(),
           .command_lab_N = commanded,
           .battery_current_A = command.battery_current_A,

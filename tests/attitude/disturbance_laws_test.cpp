@@ -58,6 +58,7 @@ std::map<std::string, Entries> examples() {
       {"radiation_pressure", {{"table", node(light.c_str())}}},
       {"planet_light",
        {{"table", node(sphere.c_str())}, {"sun_direction", numbers({1, 0.3, 0.2})}}},
+      {"aerodynamic_drag", {{"table", node(sphere.c_str())}, {"density_kg_m3", node(1e-8)}}},
       {"gravity_gradient", {}},
       {"earth_rotation", {}},
       {"wheel_momentum", {{"inertia_kg_m2", numbers({1e-4, 2e-4, 3e-4})}}},

@@ -18,10 +18,16 @@ using Names = std::set<std::string>;
 
 // Kinds that a recording of motion does not show, or that an experiment cannot lack: see the
 // reasons in their files.
-const Names not_screened = {
-    "empirical_torque", "helmholtz_cage", "mass_error",         "orbit",
-    "planet_light",     "power_balance",  "radiation_pressure", "stepper_quantization",
-    "wheel_control"};
+const Names not_screened = {"aerodynamic_drag",
+                            "empirical_torque",
+                            "helmholtz_cage",
+                            "mass_error",
+                            "orbit",
+                            "planet_light",
+                            "power_balance",
+                            "radiation_pressure",
+                            "stepper_quantization",
+                            "wheel_control"};
 // Instruments exert no torque; an orbit is where others do; lamps press at an instant's current.
 const Names not_ranked = {
     "attitude_latency",  "body_force",     "camera_misalignment", "gyro_bias",
