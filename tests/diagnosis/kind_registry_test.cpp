@@ -27,7 +27,8 @@ const Names not_screened = {"aerodynamic_drag",
                             "power_balance",
                             "radiation_pressure",
                             "stepper_quantization",
-                            "wheel_control"};
+                            "wheel_control",
+                            "wheel_imbalance"};
 // Instruments exert no torque; an orbit is where others do; lamps press at an instant's current.
 const Names not_ranked = {
     "attitude_latency",  "body_force",     "camera_misalignment", "gyro_bias",
