@@ -371,6 +371,7 @@ NOT_INJECTED = {
     "planet_light": "needs a traced table",
     "aerodynamic_drag": "diagnose does not screen it",
     "wheel_imbalance": "diagnose does not screen it",
+    "actuator_latency": "diagnose does not screen it",
     "radiation_pressure": "the laboratories of the benchmark see no Sun",
     "marker_positions": "the makers' cameras have no markers",
     "wheel_momentum": "the benchmark records no speed of a wheel",

@@ -333,6 +333,8 @@ struct Disturbance {
   bool is_abrupt = false;
   // Dry friction: about one axis it acts against the slip that the propagator holds, and sticks.
   bool is_dry_friction = false;
+  // Commanded torques and forces act later by this.
+  double command_delay_s = 0.0;
   // Its uncertain parameters have other values in every recording: a dry torque that differs from
   // day to day.
   bool per_recording = false;

@@ -50,8 +50,15 @@ PlatformState to_state(double time_s, std::span<const double> y) {
   return state;
 }
 
+double command_delay_s(std::span<const Disturbance> disturbances) {
+  double sum_s = 0.0;
+  for (const Disturbance& disturbance : disturbances) sum_s += disturbance.command_delay_s;
+  return sum_s;
+}
+
 Dynamics::Dynamics(AttitudeModel model) : model_(std::move(model)) {
   const auto& all = model_.disturbances;
+  model_.schedule.command_delay_s = command_delay_s(all);
   scales_.assign(component::extra, 1.0);
   for (const Disturbance& d : all) {
     layout_.push_back({size_, static_cast<int>(parameters_.size())});

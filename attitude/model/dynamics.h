@@ -29,6 +29,9 @@ struct AttitudeModel {
   bool holds_attitude = false;
 };
 
+// Delay of all disturbances together: for Schedule::command_delay_s of their model.
+double command_delay_s(std::span<const Disturbance> disturbances);
+
 // The state as the flat vector that is integrated: w, x, y, z, ω, charge, extra states.
 namespace component {
 inline constexpr int attitude = 0, rate = 4, charge = 7, extra = 8;

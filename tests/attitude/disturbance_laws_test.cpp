@@ -83,6 +83,7 @@ std::map<std::string, Entries> examples() {
         {"position_m", numbers({0.1, 0.2, -0.1})},
         {"dynamic_imbalance_g_cm2", node(200.0)},
         {"dynamic_phase_deg", node(20.0)}}},
+      {"actuator_latency", {{"latency_s", node(0.05)}}},
       {"actuator_gain", {{"gain_error", numbers({0.1, 0.2, -0.1})}}},
       {"inertia_error", {{"delta_kg_m2", numbers({0.003, -0.002, 0.004, 0.001, -0.001, 0.002})}}},
       {"gravity_tilt", {{"tilt_rad", numbers({1e-3, -2e-3})}}},
