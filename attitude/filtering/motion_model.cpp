@@ -38,6 +38,7 @@ MotionModel::MotionModel(const AttitudeModel& model, const Sensors& sensors,
                          const FilterSettings& settings, const Schedule& schedule)
     : model_(model), sensors_(sensors), settings_(settings) {
   model_.schedule = schedule;
+  model_.schedule.command_delay_s = command_delay_s(model.disturbances);
   if (settings.motion != Motion::disturbances) {
     std::erase_if(model_.disturbances, [](const Disturbance& d) { return !is_of_instruments(d); });
   }

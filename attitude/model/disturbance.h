@@ -76,9 +76,11 @@ struct EvaluationContext {
   Mat3Of<T> inertia_kg_m2;  // about the centre of rotation
   Vec3Of<T> gravity_lab_m_s2;
   Vec3Of<T> magnetic_field_lab_T;
-  Vec3Of<T> up_lab;                 // unit, away from the Earth's centre
-  T gravity_gradient_1_s2;          // g/R on the ground, μ/r³ in orbit
-  T illumination;                   // fraction of the light that arrives: 1 lit, 0 in shadow
+  Vec3Of<T> up_lab;         // unit, away from the Earth's centre
+  T gravity_gradient_1_s2;  // g/R on the ground, μ/r³ in orbit
+  T illumination;           // fraction of the light that arrives: 1 lit, 0 in shadow
+  // About the Earth's centre, in inertial axes whose z is the Earth's; zero on the ground.
+  Vec3Of<T> orbit_position_lab_m, orbit_velocity_lab_m_s;
   Vec3Of<T> command_body_N_m;       // commanded torque; acts on the body directly
   Vec3Of<T> command_lab_N;          // commanded force on a sliding platform
   T battery_current_A;              // drawn from the battery (positive discharges)
@@ -333,6 +335,8 @@ struct Disturbance {
   // Dry friction: about one axis it acts against the direction of slip that the propagator sets,
   // and may stick.
   bool is_dry_friction = false;
+  // Delay of commanded torques and forces.
+  double command_delay_s = 0.0;
   // The uncertain parameters have different values in every recording, for example a dry torque
   // that changes from day to day.
   bool per_recording = false;

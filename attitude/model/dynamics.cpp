@@ -50,8 +50,15 @@ PlatformState to_state(double time_s, std::span<const double> y) {
   return state;
 }
 
+double command_delay_s(std::span<const Disturbance> disturbances) {
+  double sum_s = 0.0;
+  for (const Disturbance& disturbance : disturbances) sum_s += disturbance.command_delay_s;
+  return sum_s;
+}
+
 Dynamics::Dynamics(AttitudeModel model) : model_(std::move(model)) {
   const auto& all = model_.disturbances;
+  model_.schedule.command_delay_s = command_delay_s(all);
   scales_.assign(component::extra, 1.0);
   for (const Disturbance& d : all) {
     layout_.push_back({size_, static_cast<int>(parameters_.size())});
@@ -212,6 +219,8 @@ EvaluationContext<T> Dynamics::begin(const T& time_s, const Command& command, co
           .up_lab = environment.up_lab.cast<T>(),
           .gravity_gradient_1_s2 = environment.gravity_gradient_1_s2,
           .illumination = 1.0,
+          .orbit_position_lab_m = zero,
+          .orbit_velocity_lab_m_s = zero,
           .command_body_N_m = command.torque_body_N_m.template cast<T>(),
           .command_lab_N = commanded,
           .battery_current_A = command.battery_current_A,

@@ -29,6 +29,9 @@ struct AttitudeModel {
   bool holds_attitude = false;
 };
 
+// Sum of the delays of commands of all disturbances, for Schedule::command_delay_s.
+double command_delay_s(std::span<const Disturbance> disturbances);
+
 // Layout of the state as the flat vector that is integrated: w, x, y, z, ω, charge, extra states.
 namespace component {
 inline constexpr int attitude = 0, rate = 4, charge = 7, extra = 8;

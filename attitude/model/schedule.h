@@ -66,12 +66,27 @@ struct Schedule {
   std::vector<ZeroOrderHold> held;
   // The battery current is the measured one, and no law of the model adds to it.
   bool current_is_measured = false;
+  // Commanded torques and forces act later by this, ≥ 0.
+  double command_delay_s = 0.0;
 
   // The commands that hold at `t_s`.
   ZeroOrderHold at(double t_s) const {
-    const auto later = std::upper_bound(time_s.begin(), time_s.end(), t_s);
-    if (later == time_s.begin()) return {};
-    return held[static_cast<size_t>(later - time_s.begin()) - 1];
+    ZeroOrderHold now = delayed_at(t_s, 0.0);
+    if (command_delay_s > 0.0) {
+      const ZeroOrderHold before = delayed_at(t_s, command_delay_s);
+      now.command_body_N_m = before.command_body_N_m;
+      now.force_lab_N = before.force_lab_N;
+      now.force_body_N = before.force_body_N;
+    }
+    return now;
+  }
+  // The times at which at() jumps, in no order.
+  std::vector<double> jumps_s() const {
+    std::vector<double> all = time_s;
+    if (command_delay_s > 0.0) {
+      for (const double t_s : time_s) all.push_back(t_s + command_delay_s);
+    }
+    return all;
   }
   // Appends the commands unless they are equal to the last. NumericalError unless `t_s` is later
   // than all times before.
@@ -82,6 +97,16 @@ struct Schedule {
     if (!held.empty() && held.back() == values) return;
     time_s.push_back(t_s);
     held.push_back(values);
+  }
+
+ private:
+  // With the sums of jumps_s(), so that rounding takes no jump to the other side.
+  ZeroOrderHold delayed_at(double t_s, double delay_s) const {
+    const auto later =
+        std::upper_bound(time_s.begin(), time_s.end(), t_s,
+                         [=](double now_s, double from_s) { return now_s < from_s + delay_s; });
+    if (later == time_s.begin()) return {};
+    return held[static_cast<size_t>(later - time_s.begin()) - 1];
   }
 };
 

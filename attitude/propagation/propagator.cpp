@@ -111,7 +111,7 @@ Propagator::Propagator(const Dynamics& dynamics, const PlatformState& initial, d
 
 void Propagator::collect_jumps(double from_s) {
   const AttitudeModel& model = dynamics_.model();
-  for (const double t_s : model.schedule.time_s) {
+  for (const double t_s : model.schedule.jumps_s()) {
     if (t_s > from_s && t_s < end_s_) jumps_.push_back({t_s, -1});
   }
   for (size_t d = 0; d < model.disturbances.size(); ++d) {

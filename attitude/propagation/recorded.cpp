@@ -85,6 +85,7 @@ RecordedRun::RecordedRun(const PropagationRun& run, std::function<void(double)> 
     : beside_(beside),
       progress_(std::move(progress)),
       dynamics_(run.model),
+      given_(run.model.schedule),
       delay_s_(camera_delay_s(dynamics_, run.initial)),
       times_(looks(run, delay_s_)),
       rows_(Seen{run}.rows()),
@@ -164,6 +165,13 @@ void RecordedRun::record(const Look& look, const std::vector<double>& y, const P
     seen = on_the_way_.front();
     on_the_way_.pop_front();
   }
+  Vec3 torque_body_N_m = lane_of(now.command_body_N_m, lane);
+  Vec3 force_lab_N = lane_of(now.command_lab_N, lane);
+  if (dynamics_.model().schedule.command_delay_s > 0.0) {
+    const ZeroOrderHold given = given_.at(state.time_s);
+    torque_body_N_m = given.command_body_N_m;
+    force_lab_N = given.force_lab_N + state.lab_from_body * given.force_body_N;
+  }
   recorder_.add({.time_s = state.time_s,
                  .lab_from_body_seen = seen,
                  .rate_body_rad_s = state.rate_body_rad_s,
@@ -171,8 +179,8 @@ void RecordedRun::record(const Look& look, const std::vector<double>& y, const P
                  .place_m_m_s = place_of(dynamics_, y),
                  .gyro_rad_s = lane_of(now.gyro_rad_s, lane),
                  .camera_error_rad = lane_of(now.camera_error_rad, lane),
-                 .command_body_N_m = lane_of(now.command_body_N_m, lane),
-                 .command_lab_N = lane_of(now.command_lab_N, lane),
+                 .command_body_N_m = torque_body_N_m,
+                 .command_lab_N = force_lab_N,
                  .battery_current_A = now.battery_current_A[lane],
                  .array_power_W = now.array_power_W[lane]});
   const bool is_last = states_.size() + 1 == rows_;

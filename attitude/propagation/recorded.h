@@ -60,6 +60,7 @@ class RecordedRun {
   const PowerHistory* beside_;
   std::function<void(double)> progress_;
   Dynamics dynamics_;
+  Schedule given_;  // commands when they are given, before any latency of actuators
   double delay_s_;
   std::vector<Look> times_;
   size_t rows_, thinning_;

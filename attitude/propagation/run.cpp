@@ -65,7 +65,8 @@ constexpr TextKey commands(
     "commands",
     "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `command_x_N`, `command_y_N` (of "
     "a sliding body), `battery_current_A`, "
-    "`led_current_A`, each row held until the next (zero-order hold); *or*",
+    "`led_current_A`, each row held until the next (zero-order hold); `wheel_x_rad_s` …, speeds of "
+    "wheels, linear between rows; *or*",
     {.usually = "none"});
 constexpr NumberKey time("time_s", {}, "time of the command, rising");
 constexpr Vec3Key torque("torque_N_m", {0.0, 0.0, 0.0}, "commanded torque, body axes");

@@ -258,6 +258,15 @@ void find_shadows(const TraceableScene& scene, std::span<const ShadowRay> rays,
   }
 }
 
+std::vector<uint8_t> unshadowed(const TraceableScene& scene, std::span<const ShadowRay> rays) {
+  std::vector<uint8_t> clear(rays.size());
+  for (size_t begin = 0; begin < rays.size(); begin += shadow_batch) {
+    const size_t count = std::min<size_t>(rays.size() - begin, shadow_batch);
+    find_shadows(scene, rays.subspan(begin, count), std::span(clear).subspan(begin, count));
+  }
+  return clear;
+}
+
 double shadow_ray_offset_m(const TraceableScene& scene) {
   return scene.data().ray_offset_m;
 }

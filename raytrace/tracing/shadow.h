@@ -76,6 +76,8 @@ inline constexpr int shadow_batch = 256;
 // Sets lit[i] to 1 if nothing in the scene crosses ray i, else to 0.
 void find_shadows(const TraceableScene& scene, std::span<const ShadowRay> rays,
                   std::span<uint8_t> lit);
+// Likewise for any number of rays.
+std::vector<uint8_t> unshadowed(const TraceableScene& scene, std::span<const ShadowRay> rays);
 
 // Ray offset of a shadow ray above its surface [m]; and a radius [m] that contains the whole scene
 // as seen from any point of it.

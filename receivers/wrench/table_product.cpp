@@ -156,7 +156,7 @@ Map disc(double reach, const Value& value) {
 // Map of the magnitude of the torque, from the maps "torque_x_NAME" + ending and so on. The error
 // is the component of the errors along the torque.
 Map size_of(const std::vector<Map>& maps, const std::string& name, const std::string& ending,
-            const std::string& seen_from) {
+            const std::string& title) {
   std::array<const Map*, 3> parts{};
   for (size_t axis = 0; axis < 3; ++axis) {
     const std::string part = std::string("torque_") + "xyz"[axis] + "_" + name + ending;
@@ -164,7 +164,7 @@ Map size_of(const std::vector<Map>& maps, const std::string& name, const std::st
   }
   Map size = *parts[0];
   size.name = "torque_size_" + name + ending;
-  size.title = "Size of the torque of light" + (name == "body" ? "" : " on " + name) + seen_from;
+  size.title = title;
   size.signed_values = false;
   for (size_t i = 0; i < size.value.size(); ++i) {
     const Vec3 torque(parts[0]->value[i], parts[1]->value[i], parts[2]->value[i]);
@@ -179,16 +179,18 @@ Map size_of(const std::vector<Map>& maps, const std::string& name, const std::st
 
 }  // namespace
 
-std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name) {
+std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name,
+                            const std::string& source) {
+  // The title omits the name "body", which stands for the whole platform.
+  const std::string on_part = name == "body" ? "" : " on " + name;
+  const std::string of_size = "Size of the torque of " + source + on_part;
   constexpr double same = 1e-9;
   std::vector<Map> maps;
   for (int axis = 0; axis < 3; ++axis) {
     const auto component = SmoothComponent::of(table, axis);
     if (!component) return maps;
     const std::string stem = std::string("torque_") + "xyz"[axis] + "_" + name;
-    // "body" stands for the whole platform; the title omits it.
-    const std::string title = std::string("Torque of light about body ") + "xyz"[axis] +
-                              (name == "body" ? "" : " on " + name);
+    const std::string title = "Torque of " + source + " about body " + "xyz"[axis] + on_part;
     if (table.angles == WrenchTable::Angles::tilt_heading) {
       if (table.polar_rad.front() > same) return maps;
       Map map = disc(table.polar_rad.back() / degree_rad, [&](double tilt_deg, double heading_rad) {
@@ -199,7 +201,7 @@ std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name) {
       map.x_label = "tilt towards heading 0 [deg]";
       map.y_label = "tilt towards heading 90 [deg]";
       maps.push_back(std::move(map));
-      if (axis == 2) maps.push_back(size_of(maps, name, "_polar", ""));
+      if (axis == 2) maps.push_back(size_of(maps, name, "_polar", of_size));
       continue;
     }
     const bool sphere = std::abs(table.polar_rad.front() + 0.5 * pi) < same &&
@@ -214,14 +216,15 @@ std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name) {
                     : (*component)(-elevation, pi - around_rad);
       });
       map.name = stem + (plus ? "_from_plus_z" : "_from_minus_z");
-      map.title = title + ", light from the side of " + (plus ? "+z" : "−z");
+      map.title = title + ", " + source + " from the side of " + (plus ? "+z" : "−z");
       map.x_label = plus ? "towards +x" : "towards −x";
       map.y_label = "towards +y";
       maps.push_back(std::move(map));
     }
     if (axis < 2) continue;
     for (const auto& [ending, side] : {std::pair{"_from_plus_z", "+z"}, {"_from_minus_z", "−z"}}) {
-      maps.push_back(size_of(maps, name, ending, std::string(", light from the side of ") + side));
+      maps.push_back(
+          size_of(maps, name, ending, of_size + ", " + source + " from the side of " + side));
     }
   }
   return maps;
@@ -260,11 +263,11 @@ std::string letter(int axis) {
   return std::string(1, "xyz"[axis]);
 }
 
-Table rows(const WrenchTable& table, const std::string& name) {
+Table rows(const WrenchTable& table, const std::string& name, const std::string& source) {
   const AngleNames names = angle_names(table);
-  Table result =
-      Table::of("wrench_table_" + name, "Force and torque of light on " + name + ", body frame",
-                {names.around + "_deg", names.polar + "_deg"});
+  Table result = Table::of("wrench_table_" + name,
+                           "Force and torque of " + source + " on " + name + ", body frame",
+                           {names.around + "_deg", names.polar + "_deg"});
   for (const double around_rad : table.around_rad) {
     for (const double polar_rad : table.polar_rad) {
       result.row()
@@ -336,12 +339,12 @@ Map component_map(const WrenchTable& table, const VectorColumn& column, int axis
   return map;
 }
 
-Plot component_plot(const WrenchTable& table, const VectorColumn& column, const std::string& name) {
+Plot component_plot(const WrenchTable& table, const VectorColumn& column, const std::string& name,
+                    const std::string& source) {
   Plot plot;
   plot.name = std::string(column.name) + "_" + name;
-  plot.title =
-      (std::string(column.name) == "force" ? "Force of light on " : "Torque of light on ") + name +
-      ", body frame";
+  plot.title = (std::string(column.name) == "force" ? "Force of " : "Torque of ") + source +
+               " on " + name + ", body frame";
   plot.x_label = angle_names(table).polar + " [deg]";
   plot.y_label = std::string(column.name) + " [" + column.unit + "]";
   for (int axis = 0; axis < 3; ++axis) {
@@ -371,19 +374,21 @@ Quantity largest(const VectorColumn& column, const std::string& name) {
 
 }  // namespace
 
-Product wrench_table_product(const WrenchTable& table, const std::string& name) {
+Product wrench_table_product(const WrenchTable& table, const std::string& name,
+                             const std::string& source) {
   Product product;
-  product.tables.push_back(rows(table, name));
+  product.tables.push_back(rows(table, name, source));
   const bool regular =
       regular_step_rad(table.polar_rad) > 0.0 && regular_step_rad(table.around_rad) > 0.0;
   for (const VectorColumn& column : vector_columns(table)) {
     product.quantities.push_back(largest(column, name));
-    if (table.around_rad.size() == 1) product.plots.push_back(component_plot(table, column, name));
+    if (table.around_rad.size() == 1)
+      product.plots.push_back(component_plot(table, column, name, source));
     for (int axis = 0; axis < 3 && regular; ++axis) {
       product.maps.push_back(component_map(table, column, axis, name));
     }
   }
-  for (Map& map : polar_maps(table, name)) product.maps.push_back(std::move(map));
+  for (Map& map : polar_maps(table, name, source)) product.maps.push_back(std::move(map));
   return product;
 }
 

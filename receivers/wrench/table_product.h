@@ -12,14 +12,15 @@ namespace photorque {
 
 // Smooth maps of the torque's components about body x, y and z and of its magnitude on `name`. The
 // headings or azimuths of the table must cover the whole circle in equal steps; otherwise the
-// result is empty.
+// result is empty. Titles name the `source`: light or gas.
 // - Tilt and heading: "torque_x_NAME_polar", …, "torque_size_NAME_polar"; the tilt in degrees is
 // the distance from the centre.
 // - Elevation and azimuth over the whole sphere: "torque_x_NAME_from_plus_z", … and
 // "…_from_minus_z", the hemispheres seen from outside, in Lambert's equal-area projection.
 // Interpolation between the nodes is trigonometric in the azimuth or heading, and cubic in the
 // other angle, also across the poles.
-std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name);
+std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name,
+                            const std::string& source = "light");
 
 // An angle in degrees without rounding residue: −60 instead of −60.00000000000001.
 double stated_deg(double angle_rad);
@@ -31,7 +32,8 @@ double stated_deg(double angle_rad);
 // of bins,
 // - the pictures of polar_maps(),
 // - for a single heading or azimuth: the plots "force_NAME" and "torque_NAME" over the tilt or
-// elevation.
-Product wrench_table_product(const WrenchTable& table, const std::string& name);
+//   elevation.
+Product wrench_table_product(const WrenchTable& table, const std::string& name,
+                             const std::string& source = "light");
 
 }  // namespace photorque

@@ -88,6 +88,7 @@ void require_sunlight_to_land(const ExperimentFile& file, const Scene& scene,
 // Makes the beams. Notices and input files of the sources are added to those of the model.
 std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
   const Scene& scene = model.scene;
+  if (file.molecular_flow) return {};
   if (file.sources.empty() && file.further_beams.empty())
     throw file.settings.error("source", "nothing", "at least one [[source]]");
   const std::vector<SourceKind> kinds = all_source_kinds();
@@ -180,6 +181,23 @@ Camera read_camera(const ExperimentFile& file, double scene_radius_m) {
   return camera;
 }
 
+std::optional<MolecularFlow> read_flow(const ExperimentFile& file, const Scene& scene) {
+  if (!file.molecular_flow) return std::nullopt;
+  using namespace torque_map_key;
+  const Settings& gas = *file.molecular_flow;
+  const double gas_K = gas.get(gas_temperature);
+  const double specific_J_kg_K = boltzmann_J_K * avogadro_1_mol / gas.get(molar_mass);
+  MolecularFlow flow{gas.get(flow_speed) / std::sqrt(2.0 * specific_J_kg_K * gas_K), {}};
+  const GasWall whole{gas.get(accommodation), gas.get(wall_temperature) / gas_K};
+  flow.walls.assign(scene.instances.size(), whole);
+  for (const Settings& part : gas.get(flow_part)) {
+    const GasWall wall{part.get_or(accommodation, whole.accommodation),
+                       part.get_or(wall_temperature, whole.temperature_ratio * gas_K) / gas_K};
+    for (const uint32_t instance : read_target(part, scene).instances) flow.walls[instance] = wall;
+  }
+  return flow;
+}
+
 // The message contains the file name as the user wrote it, at its position in the experiment.
 void require_scene_file(const ExperimentFile& file) {
   if (!file.scene_file) {
@@ -251,6 +269,7 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
   std::vector<Beam> beams = make_beams(file, model);
   std::vector<NamedReceiver> receivers = make_receivers(file, model.scene);
   const Camera camera = read_camera(file, model.scene.radius_m());
+  std::optional<MolecularFlow> flow = read_flow(file, model.scene);
   file.settings.finish();
 
   Experiment experiment;
@@ -261,6 +280,7 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
   experiment.lab_from_body =
       lab_from_body_at(experiment.file.attitude.tilt_rad, experiment.file.attitude.heading_rad);
   experiment.camera = camera;
+  experiment.flow = std::move(flow);
   experiment.warnings =
       geometry_warnings(experiment.scene, experiment.beams, experiment.lab_from_body);
   experiment.notices = std::move(model.notices);

@@ -16,6 +16,7 @@
 #include "raytrace/receiver.h"
 #include "raytrace/scene.h"
 #include "raytrace/tracing/tracer.h"
+#include "receivers/gather/bodies/molecular_flow.h"
 #include "receivers/kind.h"
 #include "scenes/cad/model.h"
 #include "scenes/experiment/joints.h"
@@ -71,6 +72,12 @@ struct Camera {
 // above. The sphere of this radius just fits into the picture.
 Camera camera_framing(double radius_m);
 
+// [torque_map.molecular_flow]: a gas, and the surfaces of the scene's instances in it.
+struct MolecularFlow {
+  double speed_ratio = 0.0;  // v/√(2RT)
+  std::vector<GasWall> walls;
+};
+
 // The content of an experiment file.
 struct ExperimentFile {
   std::filesystem::path path;
@@ -102,6 +109,7 @@ struct ExperimentFile {
   AttitudeGrid torque_map;
   std::optional<DirectionGrid> light_directions;  // instead of torque_map
   std::optional<uint64_t> torque_map_rays;        // per attitude or direction; else trace.rays
+  std::optional<Settings> molecular_flow;         // [torque_map.molecular_flow]
   std::optional<Settings> camera;
 
   // Tables that other parts of the program read ([array], [platform], [environment],
@@ -135,7 +143,8 @@ struct Experiment {
   std::vector<NamedReceiver> receivers;
   RigidTransform lab_from_body;  // from [attitude]
   Camera camera;
-  std::vector<std::string> notices;  // assumptions of the reader of the model, one line each
+  std::optional<MolecularFlow> flow = {};  // instead of beams
+  std::vector<std::string> notices;        // assumptions of the scene's reader, one line each
   // Reasons to doubt the results, one line each: see geometry_warnings().
   std::vector<std::string> warnings = {};
   std::vector<std::pair<std::string, std::string>> inputs;  // experiment, overrides, scene files
@@ -145,8 +154,8 @@ struct Experiment {
 };
 
 // Loads the parts to which the file refers. Throws InputError for: no [scene], a scene without
-// triangles, no source, a source whose spectrum exceeds the bands, a receiver on a missing node,
-// any key that was not read, and textures without a `picture` reader.
+// triangles, neither source nor gas flow, a source whose spectrum exceeds the bands, a receiver on
+// a missing node, any key that was not read, and textures without a `picture` reader.
 Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture = {});
 
 // Calls read_experiment_file() and resolve_experiment().

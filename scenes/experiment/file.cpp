@@ -144,6 +144,20 @@ std::optional<uint64_t> read_torque_map_rays(const Settings& root) {
   return static_cast<uint64_t>(table.get(torque_map_key::rays));
 }
 
+std::optional<Settings> read_molecular_flow(const Settings& root, bool over_directions) {
+  if (!root.has(torque_map_key::torque_map)) return std::nullopt;
+  const Settings table = root.get(torque_map_key::torque_map);
+  if (!table.has(torque_map_key::molecular_flow)) return std::nullopt;
+  if (!over_directions) {
+    throw table.error(torque_map_key::molecular_flow, "a gas flow without directions",
+                      "also azimuths and elevations");
+  }
+  if (root.has("source")) {
+    throw root.error("source", "a source beside torque_map.molecular_flow", "one of the two");
+  }
+  return table.get(torque_map_key::molecular_flow);
+}
+
 std::optional<DirectionGrid> read_light_directions(const Settings& root) {
   if (!root.has(torque_map_key::torque_map)) return std::nullopt;
   const Settings table = root.get(torque_map_key::torque_map);
@@ -260,6 +274,7 @@ ExperimentFile read_experiment_text(const std::filesystem::path& path, const std
   file.torque_map = read_torque_map(settings, file.attitude);
   file.light_directions = read_light_directions(settings);
   file.torque_map_rays = read_torque_map_rays(settings);
+  file.molecular_flow = read_molecular_flow(settings, file.light_directions.has_value());
   if (settings.has(camera_key::camera)) file.camera = settings.get(camera_key::camera);
   for (const char* key : tables_of_others) {
     if (settings.has(key)) settings.raw(key);

@@ -78,7 +78,16 @@ Key trace_table() {
 
 Key torque_map_table() {
   using namespace torque_map_key;
-  return torque_map.of({tilt, heading, azimuth, elevation, azimuth_step, elevation_step, rays});
+  const auto of_part = [](const NumberKey& key) {
+    NumberKey own = key.usually("that of the whole");
+    own.otherwise.reset();
+    return own;
+  };
+  const Key gas = molecular_flow.of(
+      {flow_speed, gas_temperature, molar_mass, accommodation, wall_temperature,
+       flow_part.of({part_node, of_part(accommodation), of_part(wall_temperature)})});
+  return torque_map.of(
+      {tilt, heading, azimuth, elevation, azimuth_step, elevation_step, rays, gas});
 }
 
 Key camera_table() {

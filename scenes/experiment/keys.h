@@ -127,6 +127,24 @@ inline constexpr IntegerKey rays(
     "of the two estimates of their scattered light then uses 64 times as many rays, at most 2^24; "
     "`trace.cutoff` has no effect on them",
     {.usually = "`trace.rays`"});
+inline constexpr NumberKey flow_speed("speed_m_s", Range::positive(),
+                                      "speed of the gas relative to the body");
+inline constexpr NumberKey gas_temperature("temperature_K", Range::positive(),
+                                           "temperature of the gas");
+inline constexpr NumberKey molar_mass("molar_mass_kg_mol", Range::positive(),
+                                      "mean molar mass of the gas; 0.016 of atomic oxygen");
+inline constexpr NumberKey accommodation(
+    "accommodation", 1.0, Range::fraction(),
+    "fraction α of their excess energy that molecules leave at a surface");
+inline constexpr NumberKey wall_temperature("wall_temperature_K", 300.0, Range::positive(),
+                                            "temperature of the surfaces");
+inline constexpr TextKey part_node("node", "a node of the scene, with the nodes below it");
+inline constexpr TablesKey flow_part("part",
+                                     "parts with other surfaces; later tables have precedence");
+inline constexpr TableKey molecular_flow(
+    "molecular_flow",
+    "with azimuths and elevations, instead of sources: force and torque of a free-molecular gas "
+    "that comes from these directions, per pascal of dynamic pressure");
 inline constexpr TableKey torque_map(
     "torque_map",
     "the attitudes, or directions of sunlight, of a table of forces and torques; without this "

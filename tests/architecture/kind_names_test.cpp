@@ -33,8 +33,9 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"attitude/disturbances/fields/helmholtz_cage.cpp", {"orbit"}},
     // `new` writes these kinds.
     {"tools/verbs/new_experiment.cpp", {"bearing_drag", "static_unbalance"}},
-    // The orbit takes the direction of the Sun, and the planet's light that of the orbit.
-    {"tools/runs/attitude_run.cpp", {"orbit", "planet_light"}},
+    // The orbit takes the direction of the Sun, and the planet's light that of the orbit; drag
+    // needs an orbit.
+    {"tools/runs/attitude_run.cpp", {"aerodynamic_drag", "orbit", "planet_light"}},
     // Light in the run is this kind; kinds with the same effect are refused.
     {"attitude/disturbances/fields/light_pressure.cpp", {"radiation_pressure"}},
     {"tools/coupling/couple.cpp", {"power_balance", "radiation_pressure"}},

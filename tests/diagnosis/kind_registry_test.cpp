@@ -18,16 +18,17 @@ using Names = std::set<std::string>;
 
 // Kinds that a recording of motion does not show, or that an experiment cannot lack: see the
 // reasons in their files.
-const Names not_screened = {
-    "empirical_torque", "helmholtz_cage", "mass_error",         "orbit",
-    "planet_light",     "power_balance",  "radiation_pressure", "stepper_quantization",
-    "wheel_control"};
+const Names not_screened = {"actuator_latency",     "aerodynamic_drag", "empirical_torque",
+                            "helmholtz_cage",       "mass_error",       "orbit",
+                            "planet_light",         "power_balance",    "radiation_pressure",
+                            "stepper_quantization", "wheel_control",    "wheel_imbalance"};
 // Instruments exert no torque; an orbit is where others do; lamps press at an instant's current.
 const Names not_ranked = {
-    "attitude_latency",  "body_force",     "camera_misalignment", "gyro_bias",
-    "gyro_misalignment", "gyro_scale",     "lamp_pressure",       "marker_positions",
-    "mass_error",        "orbit",          "sliding_air_drag",    "sliding_drag",
-    "sliding_friction",  "sliding_spring", "table_slope",         "thrust_saturation"};
+    "actuator_latency", "attitude_latency",  "body_force",     "camera_misalignment",
+    "gyro_bias",        "gyro_misalignment", "gyro_scale",     "lamp_pressure",
+    "marker_positions", "mass_error",        "orbit",          "sliding_air_drag",
+    "sliding_drag",     "sliding_friction",  "sliding_spring", "table_slope",
+    "thrust_saturation"};
 Names all_names() {
   Names names;
   for (const DisturbanceKind& kind : disturbance_kinds()) names.insert(kind.name);

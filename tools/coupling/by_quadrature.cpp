@@ -14,7 +14,7 @@ constexpr size_t torque = 3;  // index of its first component
 
 class SunlitDirections final : public LightDirections {
  public:
-  SunlitDirections(const OpticalRun& run, const SunLight& sun,
+  SunlitDirections(const OpticalRun& run, const DistantSource& sun,
                    std::unique_ptr<const SunlitBody> body, int threads)
       : run_(run), sun_(sun), body_(std::move(body)) {
     // Tolerance: mirrored light with a torque that is small compared with the largest is not
@@ -121,14 +121,14 @@ class SunlitDirections final : public LightDirections {
   }
 
   const OpticalRun& run_;
-  const SunLight& sun_;
+  const DistantSource& sun_;
   std::unique_ptr<const SunlitBody> body_;
   double tolerance_N_m_ = 0.0;
 };
 
 }  // namespace
 
-std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const SunLight& sun,
+std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const DistantSource& sun,
                                                    const Vec3& about_body_m, int threads) {
   // A lower depth limit than the default can be fulfilled only by rays.
   const ExperimentFile& file = run.experiment().file;

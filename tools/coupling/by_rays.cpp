@@ -34,7 +34,7 @@ WrenchPair bounced_of(const WrenchReceiver& receiver, const BinSums& sums,
 
 class TracedDirections final : public LightDirections {
  public:
-  TracedDirections(const OpticalRun& run, const SunLight& sun, const Vec3& about_body_m)
+  TracedDirections(const OpticalRun& run, const DistantSource& sun, const Vec3& about_body_m)
       : run_(run), sun_(sun), about_body_m_(about_body_m) {}
 
   DirectionWrench at(const RigidTransform& lab_from_body) const override {
@@ -141,13 +141,13 @@ class TracedDirections final : public LightDirections {
   }
 
   const OpticalRun& run_;
-  const SunLight& sun_;
+  const DistantSource& sun_;
   Vec3 about_body_m_;
 };
 
 }  // namespace
 
-std::unique_ptr<LightDirections> traced_directions(const OpticalRun& run, const SunLight& sun,
+std::unique_ptr<LightDirections> traced_directions(const OpticalRun& run, const DistantSource& sun,
                                                    const Vec3& about_body_m) {
   return std::make_unique<TracedDirections>(run, sun, about_body_m);
 }

@@ -16,7 +16,9 @@
 namespace photorque {
 namespace {
 
-SunLight only_sun(const Experiment& experiment) {
+// The Sun; or a gas that exerts a dynamic pressure of 1 Pa.
+DistantSource only_source(const Experiment& experiment) {
+  if (experiment.flow) return {Vec3::UnitZ(), 1.0};
   const std::vector<Settings>& sources = experiment.file.sources;
   const size_t lamps = sources.size() + experiment.file.further_beams.size();
   if (lamps != 1 || sources.size() != 1 || sources[0].text("kind") != "sun") {
@@ -48,13 +50,13 @@ struct Direction {
 };
 
 std::vector<Direction> directions_of(const WrenchTable& table, const DirectionGrid& grid,
-                                     const SunLight& sun) {
+                                     const DistantSource& source) {
   std::vector<Direction> all;
   for (size_t a = 0; a < grid.azimuth_rad.size(); ++a) {
     for (size_t e = 0; e < grid.elevation_rad.size(); ++e) {
       const Vec3 towards_body = towards_light({grid.elevation_rad[e], grid.azimuth_rad[a]});
       all.push_back({table.node(a, e), first_of_direction(table, a, e), a, e,
-                     sun.lab_from_body(towards_body)});
+                     source.lab_from_body(towards_body)});
     }
   }
   return all;
@@ -88,13 +90,14 @@ Estimate longest(const std::vector<Vec3>& vectors, const std::vector<Vec3>& erro
   return result;
 }
 
-void print_summary(const Console& console, const WrenchTable& table, const SunLight& sun) {
+void print_summary(const Console& console, const WrenchTable& table, const DistantSource& source,
+                   const std::string& title) {
   const Estimate force_N = longest(table.force_body_N, table.force_error_N);
   const Estimate torque_N_m = longest(table.torque_body_N_m, table.torque_error_N_m);
   const auto over_pressure = [&](const Estimate& e) {
-    return Estimate{e.value / sun.pressure_Pa, e.standard_error / sun.pressure_Pa};
+    return Estimate{e.value / source.pressure_Pa, e.standard_error / source.pressure_Pa};
   };
-  console.heading("Light pressure over " + std::to_string(table.nodes()) + " directions");
+  console.heading(title + " over " + std::to_string(table.nodes()) + " directions");
   console.line("  torques are about the origin of the body frame (of the model's file)");
   console.line("  largest force    " + show(force_N, "N") + ", divided by the pressure " +
                show(over_pressure(force_N), "m2"));
@@ -104,10 +107,12 @@ void print_summary(const Console& console, const WrenchTable& table, const SunLi
   for (const Vec3& error : table.torque_error_N_m) {
     worst_N_m = std::max(worst_N_m, error.cwiseAbs().maxCoeff());
   }
-  console.line("  largest standard error of a torque, relative to the largest torque " +
-               readable_number(worst_N_m / std::max(torque_N_m.value, 1e-300), 2));
-  console.line("  mean force along the light, divided by the pressure " +
-               show(mean_push_N(table) / sun.pressure_Pa) + " m2");
+  if (worst_N_m > 0.0) {
+    console.line("  largest standard error of a torque, relative to the largest torque " +
+                 readable_number(worst_N_m / std::max(torque_N_m.value, 1e-300), 2));
+  }
+  console.line("  mean force along its direction, divided by the pressure " +
+               show(mean_push_N(table) / source.pressure_Pa) + " m2");
 }
 
 // The completed directions in order, with a checkpoint at intervals.
@@ -203,11 +208,11 @@ void show_nodes(const OpticalRun& run, const std::vector<Direction>& all, size_t
 
 }  // namespace
 
-RigidTransform SunLight::lab_from_body(const Vec3& towards_body) const {
+RigidTransform DistantSource::lab_from_body(const Vec3& towards_body) const {
   return {rotation_between(towards_body, towards_lab), Vec3::Zero()};
 }
 
-std::vector<RigidTransform> fresh_directions(size_t count, const SunLight& sun) {
+std::vector<RigidTransform> fresh_directions(size_t count, const DistantSource& sun) {
   constexpr double golden_rad = 2.39996322972865332;
   std::vector<RigidTransform> attitudes;
   for (size_t i = 0; i < count; ++i) {
@@ -228,20 +233,23 @@ double largest_torque_N_m(const WrenchTable& table) {
 DirectionMap map_over_directions(const Console& console, const OpticalRun& run, int threads,
                                  const NodeWatch& watch, CheckpointFile* checkpoint) {
   const DirectionGrid& grid = *run.experiment().file.light_directions;
-  const SunLight sun = only_sun(run.experiment());
+  const DistantSource source = only_source(run.experiment());
   WrenchTable table = make_wrench_table(WrenchTable::Angles::azimuth_elevation, grid.elevation_rad,
                                         grid.azimuth_rad);
   const bool whole = covers_sphere(table);
   const WallTime wall;
-  const std::vector<Direction> all = directions_of(table, grid, sun);
+  const std::vector<Direction> all = directions_of(table, grid, source);
   std::vector<Direction> distinct;
   std::vector<size_t> place(table.nodes());  // index in `distinct` per node
   for (const Direction& one : all) {
     if (one.first == one.node) distinct.push_back(one);
     place[one.node] = one.first == one.node ? distinct.size() - 1 : place[one.first];
   }
-  std::unique_ptr<LightDirections> light = sunlit_directions(run, sun, table.about_body_m, threads);
-  if (!light) light = traced_directions(run, sun, table.about_body_m);
+  const bool is_gas = run.experiment().flow.has_value();
+  std::unique_ptr<LightDirections> light =
+      is_gas ? flow_directions(run, source, table.about_body_m)
+             : sunlit_directions(run, source, table.about_body_m, threads);
+  if (!light) light = traced_directions(run, source, table.about_body_m);
   DoneDirections done(run, console, checkpoint);
   find_all(*light, distinct, console, threads, done);
 
@@ -261,14 +269,15 @@ DirectionMap map_over_directions(const Console& console, const OpticalRun& run, 
   warnings.add(doubts, "the table");
   if (watch) show_nodes(run, all, table.nodes(), watch);
   const double wall_s = wall.elapsed_s();
-  print_summary(console, table, sun);
+  print_summary(console, table, source, is_gas ? "Drag" : "Light pressure");
 
   warnings.print(console);
-  RunResult result{
-      wrench_table_product(table, "body"), warnings.into(run.provenance()), {wall_s, rays}};
+  RunResult result{wrench_table_product(table, "body", is_gas ? "gas" : "light"),
+                   warnings.into(run.provenance()),
+                   {wall_s, rays}};
   if (whole) {
     const std::string body = run.experiment().file.path.stem().string();
-    const SpadFile spad{body, scaled(table, 1.0 / sun.pressure_Pa), true};
+    const SpadFile spad{body, scaled(table, 1.0 / source.pressure_Pa), true};
     result.files.push_back(
         {body + ".spo",
          [text = format_spad(spad, run.provenance().one_line())](

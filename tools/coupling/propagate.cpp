@@ -6,6 +6,7 @@
 #include "attitude/model/platform.h"
 #include "attitude/recordings/aem.h"
 #include "core/constants.h"
+#include "core/errors.h"
 #include "tools/coupling/report.h"
 #include "tools/coupling/table_cache.h"
 #include "tools/runs/attitude_run.h"
@@ -125,6 +126,11 @@ MotionRun run_propagate(const RunOptions& options, const Console& console,
   for (const Disturbance& one : further.disturbances) run->model.disturbances.push_back(one);
   const auto seen = look_through_scene(experiment.file(), run->sensors);
   if (prepare) prepare(experiment.settings(), *run);
+  if (run->commander && command_delay_s(run->model.disturbances) > 0.0) {
+    throw InputError({options.experiment.string()}, "disturbance",
+                     "a latency of actuators in a run that is commanded tick by tick",
+                     "no latency, or the commands in propagate.commands");
+  }
   RunResult result;
   result.provenance = experiment.provenance(run->seed);
   const auto coupled = std::make_shared<CoupledResult>(propagate_in_light(

@@ -6,6 +6,7 @@
 
 #include "core/files.h"
 #include "core/text/format.h"
+#include "core/text/parse.h"
 #include "raytrace/tracing/shadow.h"
 #include "scenes/experiment/named_files.h"
 #include "scenes/gltf/reader.h"
@@ -107,12 +108,14 @@ std::vector<std::string> orbit_overrides(const ExperimentFile& file) {
   }
   for (size_t i = 0; i < disturbances.size(); ++i) {
     const Settings& planet = disturbances[i];
-    if (!is_of_kind(planet, "planet_light")) continue;
+    const bool is_drag = is_of_kind(planet, "aerodynamic_drag");
+    if (!is_drag && !is_of_kind(planet, "planet_light")) continue;
     if (!in_orbit) {
-      throw planet.error("kind", "\"planet_light\" of a platform on the ground",
+      throw planet.error("kind", in_quotes(planet.text("kind")) + " of a platform on the ground",
                          "a disturbance \"orbit\" beside it");
     }
-    if (!planet.has("sun_direction") && to_sun) overrides.push_back(vector_override(i, *to_sun));
+    if (!is_drag && !planet.has("sun_direction") && to_sun)
+      overrides.push_back(vector_override(i, *to_sun));
   }
   return overrides;
 }

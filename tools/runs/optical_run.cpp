@@ -152,6 +152,10 @@ std::shared_ptr<const WrenchGather> OpticalRun::bodies() const {
 OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
                               const std::function<void(double)>& progress,
                               std::optional<uint64_t> rays) const {
+  if (experiment_.flow) {
+    throw experiment_.file.settings.error("source", "a gas flow in its place",
+                                          "at least one [[source]]; torque-map alone has gas");
+  }
   const WallTime wall;
   const TraceEffort& effort = experiment_.file.effort;
   TraceOptions options = experiment_.file.trace;

@@ -165,11 +165,13 @@ class Checker {
       const NamedReceiver& receiver = experiment.receivers[i];
       onto += (onto.empty() ? "" : ", ") + receiver.name + " (" + receiver.kind + ")";
     }
-    add("trace", std::to_string(experiment.file.trace.rays) + " rays of " +
-                     counted(experiment.beams.size(), "lamp") + ", " + show(power_W) + " W, " +
-                     (onto.empty() ? "without receivers" : "onto " + onto));
-    add("render", std::to_string(experiment.camera.width) + " × " +
-                      std::to_string(experiment.camera.height) + " pixels");
+    if (!experiment.flow) {
+      add("trace", std::to_string(experiment.file.trace.rays) + " rays of " +
+                       counted(experiment.beams.size(), "lamp") + ", " + show(power_W) + " W, " +
+                       (onto.empty() ? "without receivers" : "onto " + onto));
+      add("render", std::to_string(experiment.camera.width) + " × " +
+                        std::to_string(experiment.camera.height) + " pixels");
+    }
     const AttitudeGrid& grid = file_->torque_map;
     if (file_->light_directions) {
       add("torque-map", counted(file_->light_directions->elevation_rad.size(), "elevation") +

@@ -167,6 +167,9 @@ TorqueMapRun run_torque_map(const RunOptions& options, const Console& console,
   const ExperimentFile file =
       read_experiment_text(options.experiment, options.experiment_text(), options.all_overrides());
   if (file.light_directions) own.threads = 1;
+  if (watch && file.molecular_flow) {
+    throw InputError({"--page"}, "", "a map of a gas flow", "directions of sunlight");
+  }
   if (checkpoint != nullptr && !file.light_directions) {
     throw InputError({"--checkpoint"}, "", "a map over tilts",
                      "directions of sunlight ([torque_map] azimuth_step_deg, or azimuth_deg)");

@@ -69,6 +69,10 @@ class Circle {
     const Vec3 node = orbit_.node(), ahead = orbit_.ahead();
     now.up_lab = cos(u) * node.cast<T>() + sin(u) * ahead.cast<T>();
     now.gravity_gradient_1_s2 = std::pow(orbit_.motion_rad_s(), 2);
+    const double speed_m_s = orbit_.radius_m * orbit_.motion_rad_s();
+    now.orbit_position_lab_m = T(orbit_.radius_m) * now.up_lab;
+    now.orbit_velocity_lab_m_s =
+        T(speed_m_s) * (cos(u) * ahead.cast<T>() - sin(u) * node.cast<T>());
   }
   Vec3 position_m(double time_s) const { return orbit_.radius_m * orbit_.up(time_s); }
 
@@ -84,13 +88,20 @@ class Ephemeris {
 
   template <class T>
   void apply(EvaluationContext<T>& now) const {
-    Vec3Of<T> position_m;
+    Vec3Of<T> position_m, velocity_m_s;
     for (int k = 0; k < 3; ++k) {
       position_m[k] = from_values(now.time_s, [&](double t_s) {
         const auto [value, slope] = states_->at(zero_s_ + t_s);
         return std::array<double, 2>{value[k], slope[k]};
       });
+      velocity_m_s[k] = from_values(now.time_s, [&](double t_s) {
+        const auto [position, velocity] = states_->at(zero_s_ + t_s);
+        const double fall_1_s2 = earth_gravitation_m3_s2 / std::pow(position.norm(), 3);
+        return std::array<double, 2>{velocity[k], -fall_1_s2 * position[k]};
+      });
     }
+    now.orbit_position_lab_m = position_m;
+    now.orbit_velocity_lab_m_s = velocity_m_s;
     const T square_m2 = position_m.dot(position_m), distance_m = sqrt(square_m2);
     now.up_lab = position_m / distance_m;
     now.gravity_gradient_1_s2 = earth_gravitation_m3_s2 / (square_m2 * distance_m);

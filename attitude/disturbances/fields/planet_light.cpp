@@ -111,15 +111,6 @@ class PlanetLight final : public TorqueLaw<PlanetLight> {
   std::optional<TorqueSurface> infrared_;
 };
 
-TorqueSurface sphere_of(const Settings& settings, const TextKey& table) {
-  TorqueSurface surface(read_wrench_table(file_of(settings, table)));
-  if (surface.angles() != WrenchTable::Angles::azimuth_elevation) {
-    throw settings.error(table, "a table over tilt and heading",
-                         "one over azimuth and elevation: the planet's light comes from all sides");
-  }
-  return surface;
-}
-
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   PlanetOptions options;
   PlanetSurface& surface = options.surface;
@@ -136,10 +127,11 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   options.irradiance_W_m2 = settings.get(key::irradiance);
   options.table_W_m2 = settings.get(key::table_irradiance);
   std::optional<TorqueSurface> infrared;
-  if (settings.has(key::infrared_table)) infrared = sphere_of(settings, key::infrared_table);
-  return make_disturbance<PlanetLight>({scalar_parameter(settings, planet_factor)}, Stage::torque,
-                                       {}, options, sphere_of(settings, key::table),
-                                       std::move(infrared));
+  if (settings.has(key::infrared_table))
+    infrared = sphere_of(settings, key::infrared_table, "the planet's light");
+  return make_disturbance<PlanetLight>(
+      {scalar_parameter(settings, planet_factor)}, Stage::torque, {}, options,
+      sphere_of(settings, key::table, "the planet's light"), std::move(infrared));
 }
 
 }  // namespace

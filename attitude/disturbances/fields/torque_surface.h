@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/numerics/dual.h"
+#include "core/settings/settings.h"
 #include "core/wrench.h"
 
 namespace photorque {
@@ -51,6 +52,10 @@ class TorqueSurface {
 // order and among other columns. Every pair of angles occurs once. Lines that start with # are
 // skipped. InputError with the line for anything else.
 WrenchTable read_wrench_table(const std::filesystem::path& path);
+
+// The table over azimuth and elevation that `key` names. Throws InputError for a table over tilts,
+// because `source` ("the wind") comes from all sides.
+TorqueSurface sphere_of(const Settings& settings, std::string_view key, const std::string& source);
 
 // The torque of a surface at a polar angle and the angle around the pole [N m, body axes].
 template <class T>

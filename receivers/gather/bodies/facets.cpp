@@ -56,6 +56,12 @@ Facets::Facets(const Scene& scene) {
   find_free(ball_about(facets_).radius_m);
 }
 
+double Facets::area_m2() const {
+  double sum_m2 = 0.0;
+  for (const Facet& facet : facets_) sum_m2 += facet.area_m2;
+  return sum_m2;
+}
+
 // Finds the facets that nothing can shade. Compares facets with the corners of all others, for up
 // to 2e8 pairs; beyond this limit only the largest facets are compared.
 void Facets::find_free(double scene_radius_m) {

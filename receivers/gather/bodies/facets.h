@@ -24,6 +24,11 @@ struct Facet {
   // Whether no part of the scene lies above the back [0] or the front [1], so that nothing can
   // shade this side.
   std::array<bool, 2> free = {false, false};
+
+  // The point with these weights of the corners 1 and 2.
+  Vec3 at(const Vec2& uv) const {
+    return corner_m[0] + uv[0] * (corner_m[1] - corner_m[0]) + uv[1] * (corner_m[2] - corner_m[0]);
+  }
 };
 
 // All facets of a scene, instance by instance.
@@ -43,6 +48,7 @@ class Facets {
   // Ball that contains an instance.
   const Ball& ball_of(uint32_t instance) const { return balls_[instance]; }
   size_t count() const { return facets_.size(); }
+  double area_m2() const;
   // Result of fronts_look_inwards() for an instance.
   std::optional<bool> inward(uint32_t instance) const { return inward_[instance]; }
 

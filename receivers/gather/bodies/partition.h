@@ -95,6 +95,10 @@ struct Levels {
   uint32_t finest = 0, along_traces = 0;
 };
 
+// Lines within the fraction `plane_rounding` of the scene's size are in a facet's plane. Pieces
+// below the fraction `least_piece` of the total area are not cut further.
+inline constexpr double plane_rounding = 1e-7, least_piece = 1e-6;
+
 // A facet and the lines on it at which its illumination or its view changes.
 class Screen {
  public:

@@ -12,10 +12,7 @@ namespace photorque {
 namespace {
 
 constexpr size_t most_facets = 20'000;
-// Largest half-angle of a light that is treated as a point for shadows.
-constexpr double widest_rad = 1.0 * degree_rad;
-constexpr double rounding = 1e-7;     // of the scene's size: counts as in the facet's plane
-constexpr double least_piece = 1e-6;  // of the total area: smaller pieces are not cut
+constexpr double widest_rad = 1.0 * degree_rad;  // largest half-angle treated as a point in shadows
 
 // Sums the force and torque of the onward light of each owner, the piece that emitted the ray.
 OnwardSink adding_to(std::vector<TwofoldSum>& sums, const ScatteredLight& scattered) {
@@ -138,7 +135,7 @@ class SunlitBody::Direction {
     const LitSide& lit = sides_.back();
     Screen screen(facet);
     const auto add = [&](std::span<const Line> lines, const Vec3& normal, const Vec3& direction) {
-      screen.add(lines, normal, direction, rounding * scene_diameter_m(body_.scene_));
+      screen.add(lines, normal, direction, plane_rounding * scene_diameter_m(body_.scene_));
     };
     const Vec3 normal = lit.side.normal();
     const std::vector<Line>& cuts = body_.cuts_[lit.number / 2];
@@ -171,19 +168,14 @@ class SunlitBody::Direction {
     }
   }
 
-  Vec3 point_m(const Facet& facet, const Vec2& uv) const {
-    const Vec3& origin = facet.corner_m[0];
-    return origin + uv[0] * (facet.corner_m[1] - origin) + uv[1] * (facet.corner_m[2] - origin);
-  }
-
   // Traces one shadow ray for each piece and keeps the lit pieces.
   void find_lit() {
     const double far_m = 4.0 * scene_diameter_m(body_.scene_);
     std::vector<ShadowRay> rays;
     for (const LitPiece& one : pieces_) {
       const LitSide& lit = sides_[one.side];
-      ShadowRay ray = probe(body_.scene_, point_m(*lit.side.facet, one.piece.centre_uv),
-                            lit.side.normal(), far_m);
+      ShadowRay ray =
+          probe(body_.scene_, lit.side.facet->at(one.piece.centre_uv), lit.side.normal(), far_m);
       for (int k = 0; k < 3; ++k) ray.direction[k] = static_cast<float>(-lit.travel[k]);
       rays.push_back(ray);
     }
@@ -202,7 +194,7 @@ class SunlitBody::Direction {
     for (size_t i = 0; i < pieces_.size(); ++i) {
       const LitSide& lit = sides_[pieces_[i].side];
       if (body_.scattered_.lines(lit.number).empty()) continue;
-      rays.push_back(probe(body_.scene_, point_m(*lit.side.facet, pieces_[i].piece.centre_uv),
+      rays.push_back(probe(body_.scene_, lit.side.facet->at(pieces_[i].piece.centre_uv),
                            lit.side.normal(), body_.scattered_.close_m()));
       whose.push_back(i);
     }
@@ -211,14 +203,8 @@ class SunlitBody::Direction {
   }
 
   std::vector<uint8_t> unshadowed(std::span<const ShadowRay> rays) {
-    std::vector<uint8_t> clear(rays.size());
-    for (size_t begin = 0; begin < rays.size(); begin += shadow_batch) {
-      const size_t count = std::min<size_t>(rays.size() - begin, shadow_batch);
-      find_shadows(body_.scene_, rays.subspan(begin, count),
-                   std::span(clear).subspan(begin, count));
-    }
     found_.rays += rays.size();
-    return clear;
+    return photorque::unshadowed(body_.scene_, rays);
   }
 
   void add_direct() {
@@ -227,7 +213,7 @@ class SunlitBody::Direction {
       const double area_m2 = one.piece.share * lit.side.facet->area_m2;
       const Vec3 force_N =
           area_m2 / speed_of_light_m_s * lit.contact.of_flow(lit.light, lit.side.normal());
-      const Vec3 at_m = point_m(*lit.side.facet, one.piece.centre_uv);
+      const Vec3 at_m = lit.side.facet->at(one.piece.centre_uv);
       found_.direct += wrench_of(force_N, at_m - body_.about_m_);
       if (body_.scattered_.unseen(lit.number)) continue;
       for (size_t b = 0; b < bands_; ++b) {
@@ -255,7 +241,7 @@ class SunlitBody::Direction {
   void add_onward_rays(const LitPiece& one, uint32_t owner, std::vector<OnwardRay>& rays) const {
     const LitSide& lit = sides_[one.side];
     const Vec3 normal = lit.side.normal();
-    const Vec3 at_m = point_m(*lit.side.facet, place_in(one));
+    const Vec3 at_m = lit.side.facet->at(place_in(one));
     const double offset_m = shadow_ray_offset_m(body_.scene_);
     const double power_W = one.piece.share * lit.side.facet->area_m2 * lit.light.irradiance_W_m2;
     const auto add = [&](const BandValues& share, const Vec3& direction, double above_m) {
@@ -386,16 +372,6 @@ std::unique_ptr<const SunlitBody> SunlitBody::make(const TraceableScene& scene,
   return std::unique_ptr<const SunlitBody>(new SunlitBody(scene, beams[0], about_m, effort));
 }
 
-namespace {
-
-double area_of(const Facets& facets) {
-  double area_m2 = 0.0;
-  for (const Facet& facet : facets.all()) area_m2 += facet.area_m2;
-  return area_m2;
-}
-
-}  // namespace
-
 SunlitBody::SunlitBody(const TraceableScene& scene, const Beam& beam, const Vec3& about_m,
                        const SunlitEffort& effort)
     : scene_(scene),
@@ -404,8 +380,8 @@ SunlitBody::SunlitBody(const TraceableScene& scene, const Beam& beam, const Vec3
       facets_(scene.scene()),
       light_(std::make_shared<DiscLight>(*beam_.emitter, *beam_.aperture)),
       outlines_(facets_),
-      cuts_(all_cuts(facets_, rounding * scene_diameter_m(scene))),
-      area_m2_(area_of(facets_)),
+      cuts_(all_cuts(facets_, plane_rounding * scene_diameter_m(scene))),
+      area_m2_(facets_.area_m2()),
       mirror_cell_m2_(area_m2_ / static_cast<double>(effort.mirror_cells)),
       scattered_(scene, {facets_, outlines_, cuts_}, about_m, effort.scattered) {}
 

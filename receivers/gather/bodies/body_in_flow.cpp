@@ -1,0 +1,110 @@
+#include "receivers/gather/bodies/body_in_flow.h"
+
+#include <utility>
+
+#include "receivers/gather/bodies/onward.h"
+
+namespace photorque {
+
+// The computation for one direction of the flow.
+class BodyInFlow::Direction {
+ public:
+  Direction(const BodyInFlow& body, const Vec3& travel)
+      : body_(body),
+        travel_(travel),
+        least_m2_(least_piece * body.facets_.area_m2()),
+        grid_(outlines(), travel, body.scene_.scene().radius_m()) {}
+
+  Result run() {
+    for (const Facet& facet : body_.facets_.all()) {
+      const std::optional<bool> inward = body_.facets_.inward(facet.instance);
+      for (const bool front : {false, true}) {
+        if (inward != front) add_side({&facet, front});
+      }
+    }
+    const std::vector<uint8_t> clear = unshadowed(body_.scene_, rays_);
+    for (size_t i = 0; i < clear.size(); ++i) {
+      if (clear[i] != 0) found_.per_pressure += shaded_[i];
+    }
+    found_.rays = rays_.size();
+    return found_;
+  }
+
+ private:
+  std::vector<Line> outlines() const {
+    std::vector<Line> lines;
+    body_.outlines_.in_light(travel_, lines);
+    return lines;
+  }
+
+  void add_side(const FacetSide& side) {
+    const Facet& facet = *side.facet;
+    const Vec3 normal = side.normal();
+    const MolecularFlux flux(body_.speed_ratio_, travel_, normal);
+    if (flux.is_none()) return;
+    const Vec3 force_m2 = facet.area_m2 * flux.force(body_.walls_[facet.instance]);
+    const auto wrench_at = [&](const Vec3& at_m) {
+      return wrench_of(force_m2, at_m - body_.about_m_);
+    };
+    const Vec3& middle_m = facet.ball.centre_m;
+    if (facet.free[side.front ? 1 : 0]) {
+      found_.per_pressure += wrench_at(middle_m);
+      return;
+    }
+    if (!(normal.dot(travel_) < -1e-9)) {
+      test(middle_m, normal, flux.arriving().normalized(), wrench_at(middle_m));
+      return;
+    }
+    cut(facet, normal);
+    for (const Piece& piece : parts_) {
+      const Vec3 at_m = facet.at(piece.centre_uv);
+      test(at_m, normal, travel_, piece.share * wrench_at(at_m));
+    }
+  }
+
+  // Into pieces that are in shadow as a whole or not at all.
+  void cut(const Facet& facet, const Vec3& normal) {
+    Screen screen(facet);
+    const double rounding_m = plane_rounding * scene_diameter_m(body_.scene_);
+    const auto number = static_cast<size_t>(&facet - body_.facets_.all().data());
+    screen.add(body_.cuts_[number], normal, travel_, rounding_m);
+    grid_.over(facet.corner_m, lines_);
+    screen.add(lines_, normal, travel_, rounding_m);
+    parts_.clear();
+    screen.cut({}, least_m2_, parts_);
+  }
+
+  // Counts the wrench unless the scene is in the way of molecules that travel along `travel`.
+  void test(const Vec3& at_m, const Vec3& normal, const Vec3& travel, const WrenchSum& wrench) {
+    ShadowRay ray = probe(body_.scene_, at_m, normal, 4.0 * scene_diameter_m(body_.scene_));
+    for (int k = 0; k < 3; ++k) ray.direction[k] = static_cast<float>(-travel[k]);
+    rays_.push_back(ray);
+    shaded_.push_back(wrench);
+  }
+
+  const BodyInFlow& body_;
+  Vec3 travel_;
+  double least_m2_;
+  LineGrid grid_;
+  std::vector<Line> lines_;
+  std::vector<Piece> parts_;
+  std::vector<ShadowRay> rays_;
+  std::vector<WrenchSum> shaded_;  // of each ray
+  Result found_;
+};
+
+BodyInFlow::BodyInFlow(const TraceableScene& scene, double speed_ratio, std::vector<GasWall> walls,
+                       const Vec3& about_m)
+    : scene_(scene),
+      speed_ratio_(speed_ratio),
+      walls_(std::move(walls)),
+      about_m_(about_m),
+      facets_(scene.scene()),
+      outlines_(facets_),
+      cuts_(all_cuts(facets_, plane_rounding * scene_diameter_m(scene))) {}
+
+BodyInFlow::Result BodyInFlow::wrench(const Vec3& travel) const {
+  return Direction(*this, travel).run();
+}
+
+}  // namespace photorque
