@@ -30,12 +30,11 @@ struct SeenTriangle {
 };
 
 // The triangles of all parts; of many, the boxes about the parts' meshes.
-std::vector<SeenTriangle> triangles_of(const Scene& scene, const RigidTransform& emitter_from_body,
-                                       double disc_height_m, uint64_t most) {
+std::vector<SeenTriangle> triangles_of(const Scene& scene, const Vec3& centre_m,
+                                       const Quat& rays_from_body, uint64_t most) {
   const auto seen_at = [&](const Vec3& body_m) {
-    const Vec3 at_m = emitter_from_body.point(body_m);
-    return Seen{at_m.x(), at_m.y(), std::abs(at_m.z() - disc_height_m),
-                std::hypot(at_m.x(), at_m.y())};
+    const Vec3 at_m = rays_from_body * (body_m - centre_m);
+    return Seen{at_m.x(), at_m.y(), std::abs(at_m.z()), std::hypot(at_m.x(), at_m.y())};
   };
   size_t count = 0;
   for (const Instance& part : scene.instances) count += scene.meshes[part.mesh].triangles.size();
@@ -247,10 +246,11 @@ std::optional<Targets> Targets::of(const Emitter& emitter, const RigidTransform&
   const auto* light = dynamic_cast<const ParallelLight*>(&emitter);
   if (light == nullptr) return std::nullopt;
   const std::vector<SeenTriangle> triangles =
-      triangles_of(scene.scene, body_from_emitter.inverse(), light->radius_m(), rays / 8);
+      triangles_of(scene.scene, scene.centre_m, body_from_emitter.rotation.conjugate(), rays / 8);
   if (triangles.empty()) return std::nullopt;
+  const double height_m = 1.001 * scene.radius_m;
   // Rounding error of a few operations on coordinates in single precision.
-  const double rounding_m = 1e-6 * light->radius_m();
+  const double rounding_m = 1e-6 * height_m;
   // A range ends where the angle has grown by this factor, from the outside inwards.
   constexpr double worth = 1.5, rounding_of_sine = 1.0 + 1e-6;
   std::vector<AngleRange> ranges = {{0.0, 1.0, 0.0, 0.0, {}}};
@@ -266,14 +266,19 @@ std::optional<Targets> Targets::of(const Emitter& emitter, const RigidTransform&
     ranges[i].cells = cells_within(triangles, sines[i], rounding_m, rays);
   }
   std::reverse(ranges.begin(), ranges.end());
-  Targets targets(*light, std::move(ranges));
+  const Vec3 before_m = scene.centre_m - body_from_emitter.direction(Vec3(0.0, 0.0, height_m));
+  Targets targets(*light, {body_from_emitter.rotation, before_m}, height_m, std::move(ranges));
   constexpr double nearly_all = 0.9;
   if (!(targets.fraction_ < nearly_all)) return std::nullopt;
   return targets;
 }
 
-Targets::Targets(const ParallelLight& light, std::vector<AngleRange> ranges)
-    : light_(&light), ranges_(std::move(ranges)) {
+Targets::Targets(const ParallelLight& light, const RigidTransform& body_from_rays, double height_m,
+                 std::vector<AngleRange> ranges)
+    : light_(&light),
+      body_from_rays_(body_from_rays),
+      height_m_(height_m),
+      ranges_(std::move(ranges)) {
   double sum_m2 = 0.0;
   for (const AngleRange& range : ranges_) sum_m2 += (range.to - range.from) * range.cells.area_m2();
   double before = 0.0;
@@ -312,7 +317,7 @@ void Targets::emit(SampleBlock& samples, RayBlock& rays) const {
     rays.origin_m[0][i] = static_cast<float>(all.x_m + all.size_m * x);
     rays.origin_m[1][i] = static_cast<float>(all.y_m + all.size_m * y);
   }
-  light_->place_on_discs(rays);
+  ParallelLight::place_on_discs(height_m_, rays);
 }
 
 }  // namespace photorque

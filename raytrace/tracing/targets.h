@@ -10,7 +10,9 @@
 
 namespace photorque {
 
-// The cells of a ParallelLight's disc from which rays can meet a triangle.
+// The cells of a disc about the scene, across a ParallelLight, from which rays can meet a triangle.
+// The disc takes the place of the light's own, which may be centred far away: the light is the same
+// everywhere, and rays in single precision must not see that distance.
 //
 // Seen along a direction at the angle θ from the axis a point at height z over the disc's middle
 // lies within |z| sin θ + ρ (1 − cos θ) of its place (ρ from the axis) along the axis. Triangles
@@ -29,8 +31,12 @@ class Targets {
   // Fraction of the emitter's power that is sent; the rest would meet nothing. In (0, 1).
   double fraction() const { return fraction_; }
 
-  // As Emitter::emit(), onto the cells alone. Changes dimension 2 of the samples.
+  // As Emitter::emit(), onto the cells alone, in the frame body_from_rays(). Changes dimension 2 of
+  // the samples.
   void emit(SampleBlock& samples, RayBlock& rays) const;
+
+  // The emitter's axes, with the origin just before the scene.
+  const RigidTransform& body_from_rays() const { return body_from_rays_; }
 
   struct Cell {
     uint16_t x, y;
@@ -51,9 +57,12 @@ class Targets {
     Cells cells;
   };
 
-  Targets(const ParallelLight& light, std::vector<AngleRange> ranges);
+  Targets(const ParallelLight& light, const RigidTransform& body_from_rays, double height_m,
+          std::vector<AngleRange> ranges);
 
   const ParallelLight* light_;
+  RigidTransform body_from_rays_;
+  double height_m_;  // of the scene's centre in this frame
   std::vector<AngleRange> ranges_;
   double fraction_ = 0.0;
 };

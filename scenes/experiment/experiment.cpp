@@ -63,26 +63,6 @@ void require_traceable(const Settings& source, const Beam& beam) {
   }
 }
 
-// A sun sends its rays over a disc about the body's origin that holds the scene at any attitude.
-void require_sunlight_to_land(const ExperimentFile& file, const Scene& scene,
-                              const std::vector<Beam>& beams) {
-  constexpr double most = 100.0;  // one ray of 10,000 lands, and errors are still correct
-  if (std::ranges::none_of(beams, [](const Beam& beam) {
-        return beam.aperture && std::isinf(beam.aperture->radius_m);
-      })) {
-    return;
-  }
-  const Eigen::AlignedBox3d box = scene.box();
-  const double size_m = box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm();
-  if (scene.radius_m() <= most * size_m) return;
-  std::ostringstream found;
-  found.precision(3);
-  found << "a scene that lies " << box.center().norm() << " m from the body's origin and is "
-        << 2.0 * size_m << " m large, of which rays of the sun would miss nearly all";
-  throw InputError({file.path.string()}, "scene.centre_of_rotation_m", found.str(),
-                   "a centre of rotation within 100 times its size");
-}
-
 // Notices and the files that the sources read go to the model's.
 std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
   const Scene& scene = model.scene;
@@ -120,7 +100,6 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
     }
     if (at_light) source.finish();
   }
-  require_sunlight_to_land(file, scene, beams);
   for (const Beam& beam : file.further_beams) {
     const Settings lamp(SettingsNode{}, "lamp \"" + beam.name + "\"");
     require_spectrum_inside(lamp, beam, scene.bands);

@@ -32,8 +32,8 @@ std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m)
 // Lines by where light along `travel` carries them, so that those over a facet are found fast.
 class LineGrid {
  public:
-  // `radius_m`: all lines lie in a ball about the origin.
-  LineGrid(std::vector<Line> lines, const Vec3& travel, double radius_m);
+  // `ball` holds all lines.
+  LineGrid(std::vector<Line> lines, const Vec3& travel, const Ball& ball);
 
   const std::vector<Line>& lines() const { return lines_; }
   // The lines that may pass over or under a triangle.
@@ -45,10 +45,14 @@ class LineGrid {
     return static_cast<size_t>(column) * width + static_cast<size_t>(row);
   }
   int column(double x_m) const;
+  // Across the light, from the middle of the ball.
+  Vec2 seen(const Vec3& at_m) const {
+    return {across_.dot(at_m - centre_m_), aside_.dot(at_m - centre_m_)};
+  }
   void add(uint32_t index);
 
   std::vector<Line> lines_;
-  Vec3 across_, aside_;
+  Vec3 centre_m_, across_, aside_;
   double low_m_, per_m_;
   std::vector<std::vector<uint32_t>> cells_;
   std::vector<uint32_t> seen_;  // number of the query that saw it last
