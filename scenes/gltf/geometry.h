@@ -10,6 +10,10 @@
 
 namespace photorque::gltf {
 
+// An attribute of models that CAD files are converted to: what single precision leaves of each
+// position, which is the sum of both.
+inline constexpr const char* position_rest = "_POSITION_REST";
+
 // A primitive as a mesh in the frame of its node (glTF axes and units); only the vertices that its
 // triangles use, in order of first use.
 struct PrimitiveMesh {
@@ -17,6 +21,7 @@ struct PrimitiveMesh {
   size_t degenerate = 0;          // triangles without area, left out
   double degenerate_reach = 0.0;  // of their corners, from the origin; in units of the file
   bool without_uv = false;        // texture coordinates were left out because some are not finite
+  bool is_single = true;          // positions have single precision
 };
 
 using Triangle = std::array<uint32_t, 3>;
