@@ -29,12 +29,36 @@ struct SeenTriangle {
   }
 };
 
-// The triangles of all parts; of many, the boxes about the parts' meshes.
-std::vector<SeenTriangle> triangles_of(const Scene& scene, const Vec3& centre_m,
+// A height that half of the area is below, as the light sees it: there margins are smallest.
+double middle_height_m(const Scene& scene, const Vec3& centre_m, const Vec3& along) {
+  std::vector<std::pair<double, double>> areas;  // height, area
+  double sum = 0.0;
+  for (const Instance& part : scene.instances) {
+    const Mesh& mesh = scene.meshes[part.mesh];
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Vec3 p = part.body_from_mesh * mesh.vertices_m[a] - centre_m;
+      const Vec3 q = part.body_from_mesh * mesh.vertices_m[b] - centre_m;
+      const Vec3 r = part.body_from_mesh * mesh.vertices_m[c] - centre_m;
+      areas.emplace_back(along.dot(p + q + r) / 3.0, std::abs(along.dot((q - p).cross(r - p))));
+      sum += areas.back().second;
+    }
+  }
+  std::ranges::sort(areas);
+  double below = 0.0;
+  for (const auto& [height_m, area] : areas) {
+    below += area;
+    if (below >= 0.5 * sum) return height_m;
+  }
+  return 0.0;
+}
+
+// The triangles of all parts; of many, the boxes about the parts' meshes. Heights count from
+// `middle_m`, seen from the centre.
+std::vector<SeenTriangle> triangles_of(const Scene& scene, const Vec3& centre_m, double middle_m,
                                        const Quat& rays_from_body, uint64_t most) {
   const auto seen_at = [&](const Vec3& body_m) {
     const Vec3 at_m = rays_from_body * (body_m - centre_m);
-    return Seen{at_m.x(), at_m.y(), std::abs(at_m.z()), std::hypot(at_m.x(), at_m.y())};
+    return Seen{at_m.x(), at_m.y(), std::abs(at_m.z() - middle_m), std::hypot(at_m.x(), at_m.y())};
   };
   size_t count = 0;
   for (const Instance& part : scene.instances) count += scene.meshes[part.mesh].triangles.size();
@@ -245,12 +269,14 @@ std::optional<Targets> Targets::of(const Emitter& emitter, const RigidTransform&
                                    const TraceableScene::Data& scene, uint64_t rays) {
   const auto* light = dynamic_cast<const ParallelLight*>(&emitter);
   if (light == nullptr) return std::nullopt;
-  const std::vector<SeenTriangle> triangles =
-      triangles_of(scene.scene, scene.centre_m, body_from_emitter.rotation.conjugate(), rays / 8);
+  const Vec3 along = body_from_emitter.direction(Vec3::UnitZ());
+  const double middle_m = middle_height_m(scene.scene, scene.centre_m, along);
+  const std::vector<SeenTriangle> triangles = triangles_of(
+      scene.scene, scene.centre_m, middle_m, body_from_emitter.rotation.conjugate(), rays / 8);
   if (triangles.empty()) return std::nullopt;
-  const double height_m = 1.001 * scene.radius_m;
+  const double before_m = 1.001 * scene.radius_m, height_m = before_m + middle_m;
   // Rounding error of a few operations on coordinates in single precision.
-  const double rounding_m = 1e-6 * height_m;
+  const double rounding_m = 2e-6 * before_m;
   // A range ends where the angle has grown by this factor, from the outside inwards.
   constexpr double worth = 1.5, rounding_of_sine = 1.0 + 1e-6;
   std::vector<AngleRange> ranges = {{0.0, 1.0, 0.0, 0.0, {}}};
@@ -266,8 +292,9 @@ std::optional<Targets> Targets::of(const Emitter& emitter, const RigidTransform&
     ranges[i].cells = cells_within(triangles, sines[i], rounding_m, rays);
   }
   std::reverse(ranges.begin(), ranges.end());
-  const Vec3 before_m = scene.centre_m - body_from_emitter.direction(Vec3(0.0, 0.0, height_m));
-  Targets targets(*light, {body_from_emitter.rotation, before_m}, height_m, std::move(ranges));
+  const RigidTransform body_from_rays{body_from_emitter.rotation,
+                                      scene.centre_m - before_m * along};
+  Targets targets(*light, body_from_rays, height_m, std::move(ranges));
   constexpr double nearly_all = 0.9;
   if (!(targets.fraction_ < nearly_all)) return std::nullopt;
   return targets;

@@ -62,7 +62,7 @@ class Targets {
 
   const ParallelLight* light_;
   RigidTransform body_from_rays_;
-  double height_m_;  // of the scene's centre in this frame
+  double height_m_;  // of the middle of the disc in this frame
   std::vector<AngleRange> ranges_;
   double fraction_ = 0.0;
 };
