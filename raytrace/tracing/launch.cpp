@@ -202,8 +202,9 @@ std::array<int, sobol_dimensions> shared_bits(int bits, double aperture_m, doubl
 LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_emitter,
                        const TraceableScene::Data& scene, int log2_rays,
                        std::optional<Targets> targets) {
-  const Vec3 centre = body_from_emitter.inverse().point(scene.centre_m);
-  const RayPlacement placement(body_from_emitter, scene);
+  const RigidTransform& body_from_rays = targets ? targets->body_from_rays() : body_from_emitter;
+  const Vec3 centre = body_from_rays.inverse().point(scene.centre_m);
+  const RayPlacement placement(body_from_rays, scene);
   const BeamSample sample = sample_beam(emitter, targets, placement);
   const auto bits = shared_bits(std::max(log2_rays - log2_batch, 0), std::sqrt(sample.aperture2),
                                 std::sqrt(sample.spread2) * std::max(centre.z(), 0.0));

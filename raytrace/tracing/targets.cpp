@@ -30,14 +30,37 @@ struct SeenTriangle {
   }
 };
 
+// The median height along the light of the area that the light meets. A disc at this height has
+// small margins for a scene with most of its area at one height.
+double median_height_m(const Scene& scene, const Vec3& centre_m, const Vec3& along) {
+  std::vector<std::pair<double, double>> areas;  // height, area
+  double sum = 0.0;
+  for (const Instance& part : scene.instances) {
+    const Mesh& mesh = scene.meshes[part.mesh];
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Vec3 p = part.body_from_mesh * mesh.vertices_m[a] - centre_m;
+      const Vec3 q = part.body_from_mesh * mesh.vertices_m[b] - centre_m;
+      const Vec3 r = part.body_from_mesh * mesh.vertices_m[c] - centre_m;
+      areas.emplace_back(along.dot(p + q + r) / 3.0, std::abs(along.dot((q - p).cross(r - p))));
+      sum += areas.back().second;
+    }
+  }
+  std::ranges::sort(areas);
+  double below = 0.0;
+  for (const auto& [height_m, area] : areas) {
+    below += area;
+    if (below >= 0.5 * sum) return height_m;
+  }
+  return 0.0;
+}
+
 // Triangles of all parts; for scenes of more than `most` triangles, those of the boxes around the
-// parts' meshes.
-std::vector<SeenTriangle> triangles_of(const Scene& scene, const RigidTransform& emitter_from_body,
-                                       double disc_height_m, uint64_t most) {
+// parts' meshes. Heights count from `middle_m` above the scene's centre.
+std::vector<SeenTriangle> triangles_of(const Scene& scene, const Vec3& centre_m, double middle_m,
+                                       const Quat& rays_from_body, uint64_t most) {
   const auto seen_at = [&](const Vec3& body_m) {
-    const Vec3 at_m = emitter_from_body.point(body_m);
-    return Seen{at_m.x(), at_m.y(), std::abs(at_m.z() - disc_height_m),
-                std::hypot(at_m.x(), at_m.y())};
+    const Vec3 at_m = rays_from_body * (body_m - centre_m);
+    return Seen{at_m.x(), at_m.y(), std::abs(at_m.z() - middle_m), std::hypot(at_m.x(), at_m.y())};
   };
   size_t count = 0;
   for (const Instance& part : scene.instances) count += scene.meshes[part.mesh].triangles.size();
@@ -248,17 +271,30 @@ std::optional<Targets> Targets::of(const Emitter& emitter, const RigidTransform&
                                    const TraceableScene::Data& scene, uint64_t rays) {
   const auto* light = dynamic_cast<const ParallelLight*>(&emitter);
   if (light == nullptr) return std::nullopt;
+  const Quat& rotation = body_from_emitter.rotation;
+  std::optional<Targets> best = at_height(*light, rotation, scene, 0.0, rays);
+  const double median_m = median_height_m(scene.scene, scene.centre_m, rotation * Vec3::UnitZ());
+  constexpr double same_height = 0.01;  // of the scene's radius
+  if (std::abs(median_m) < same_height * scene.radius_m) return best;
+  std::optional<Targets> other = at_height(*light, rotation, scene, median_m, rays);
+  return other && (!best || other->fraction_ < best->fraction_) ? other : best;
+}
+
+std::optional<Targets> Targets::at_height(const ParallelLight& light, const Quat& body_from_emitter,
+                                          const TraceableScene::Data& scene, double middle_m,
+                                          uint64_t rays) {
   const std::vector<SeenTriangle> triangles =
-      triangles_of(scene.scene, body_from_emitter.inverse(), light->radius_m(), rays / 8);
+      triangles_of(scene.scene, scene.centre_m, middle_m, body_from_emitter.conjugate(), rays / 8);
   if (triangles.empty()) return std::nullopt;
+  const double before_m = 1.001 * scene.radius_m, height_m = before_m + middle_m;
   // Rounding error of a few operations on coordinates in single precision.
-  const double rounding_m = 1e-6 * light->radius_m();
+  const double rounding_m = 2e-6 * before_m;
   // Adjacent ranges, from the outside inwards, differ in their angle by at least this factor.
   constexpr double worth = 1.5, rounding_of_sine = 1.0 + 1e-6;
   std::vector<AngleRange> ranges = {{0.0, 1.0, 0.0, 0.0, {}}};
-  std::vector<double> sines = {sine_within(*light, 1.0) * rounding_of_sine};
+  std::vector<double> sines = {sine_within(light, 1.0) * rounding_of_sine};
   for (const double inner : {0.997, 0.99, 0.98, 0.95, 0.9, 0.8, 0.5}) {
-    const double sine = sine_within(*light, inner) * rounding_of_sine;
+    const double sine = sine_within(light, inner) * rounding_of_sine;
     if (sines.back() == 0.0 || sine * worth > sines.back()) continue;
     ranges.back().from = inner;
     ranges.push_back({0.0, inner, 0.0, 0.0, {}});
@@ -268,14 +304,20 @@ std::optional<Targets> Targets::of(const Emitter& emitter, const RigidTransform&
     ranges[i].cells = cells_within(triangles, sines[i], rounding_m, rays);
   }
   std::reverse(ranges.begin(), ranges.end());
-  Targets targets(*light, std::move(ranges));
+  const RigidTransform body_from_rays{
+      body_from_emitter, scene.centre_m - before_m * (body_from_emitter * Vec3::UnitZ())};
+  Targets targets(light, body_from_rays, height_m, std::move(ranges));
   constexpr double nearly_all = 0.9;
   if (!(targets.fraction_ < nearly_all)) return std::nullopt;
   return targets;
 }
 
-Targets::Targets(const ParallelLight& light, std::vector<AngleRange> ranges)
-    : light_(&light), ranges_(std::move(ranges)) {
+Targets::Targets(const ParallelLight& light, const RigidTransform& body_from_rays, double height_m,
+                 std::vector<AngleRange> ranges)
+    : light_(&light),
+      body_from_rays_(body_from_rays),
+      height_m_(height_m),
+      ranges_(std::move(ranges)) {
   double sum_m2 = 0.0;
   for (const AngleRange& range : ranges_) sum_m2 += (range.to - range.from) * range.cells.area_m2();
   double before = 0.0;
@@ -314,7 +356,7 @@ void Targets::emit(SampleBlock& samples, RayBlock& rays) const {
     rays.origin_m[0][i] = static_cast<float>(all.x_m + all.size_m * x);
     rays.origin_m[1][i] = static_cast<float>(all.y_m + all.size_m * y);
   }
-  light_->place_on_discs(rays);
+  ParallelLight::place_on_discs(height_m_, rays);
 }
 
 }  // namespace photorque

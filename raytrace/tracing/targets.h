@@ -10,7 +10,9 @@
 
 namespace photorque {
 
-// Cells of a ParallelLight's disc from which rays can meet a triangle.
+// Cells of a disc about the scene, perpendicular to a ParallelLight, from which rays can meet a
+// triangle. This disc replaces that of the light, which may be far from the scene: rays in single
+// precision would lose digits over that distance.
 //
 // Seen along a direction at the angle θ from the axis, a point moves by at most
 // |z| sin θ + ρ (1 − cos θ) from its position along the axis (z: height over the disc's middle, ρ:
@@ -29,8 +31,13 @@ class Targets {
   // Fraction of the emitter's power that is sent, in (0, 1); the rest would meet nothing.
   double fraction() const { return fraction_; }
 
-  // See Emitter::emit(); the points lie in the cells only. Changes dimension 2 of the samples.
+  // See Emitter::emit(); the points lie in the cells only, in the frame body_from_rays(). Changes
+  // dimension 2 of the samples.
   void emit(SampleBlock& samples, RayBlock& rays) const;
+
+  // Transform from the frame of the rays: the emitter's axes, with the origin just before the
+  // scene.
+  const RigidTransform& body_from_rays() const { return body_from_rays_; }
 
   struct Cell {
     uint16_t x, y;
@@ -51,9 +58,16 @@ class Targets {
     Cells cells;
   };
 
-  Targets(const ParallelLight& light, std::vector<AngleRange> ranges);
+  // For a disc at `middle_m` above the scene's centre, along the light.
+  static std::optional<Targets> at_height(const ParallelLight& light, const Quat& body_from_emitter,
+                                          const TraceableScene::Data& scene, double middle_m,
+                                          uint64_t rays);
+  Targets(const ParallelLight& light, const RigidTransform& body_from_rays, double height_m,
+          std::vector<AngleRange> ranges);
 
   const ParallelLight* light_;
+  RigidTransform body_from_rays_;
+  double height_m_;  // height of the disc's middle in this frame
   std::vector<AngleRange> ranges_;
   double fraction_ = 0.0;
 };

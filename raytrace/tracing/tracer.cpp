@@ -188,7 +188,7 @@ struct Plan {
   uint64_t batches = 0;  // per replicate
   uint64_t rays = 0;     // over all replicates
   double emitted_W = 0.0;
-  double untraced_W = 0.0;  // part of emitted_W: parallel light that meets nothing and is not sent
+  double sent_W = 0.0;  // part of emitted_W: without parallel light that meets nothing
 };
 
 // Distributes the rays to the beams in proportion to the sent power, rounded up to powers of two:
@@ -206,13 +206,12 @@ Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from
                                   static_cast<uint64_t>(rays_per_replicate)));
     sent_W.push_back(targets.back() ? power * targets.back()->fraction() : power);
     plan.emitted_W += power;
-    plan.untraced_W += power - sent_W.back();
+    plan.sent_W += sent_W.back();
   }
-  const double all_sent_W = plan.emitted_W - plan.untraced_W;
   for (size_t i = 0; i < beams.size(); ++i) {
     const Beam& beam = beams[i];
     const double power = sent_W[i];
-    const double wanted = rays_per_replicate * power / all_sent_W;
+    const double wanted = rays_per_replicate * power / plan.sent_W;
     const uint64_t capped = static_cast<uint64_t>(std::min(wanted, 0x1p31));
     const uint32_t rays =
         std::bit_ceil(std::max<uint32_t>(static_cast<uint32_t>(capped), ray_block));
@@ -352,8 +351,8 @@ PowerBalance make_power_balance(const std::vector<TraceSums>& replicates, const 
   PowerBalance power_balance;
   power_balance.emitted_W = plan.emitted_W;
   power_balance.absorbed_W = estimate(absorbed);
-  power_balance.escaped_W =
-      estimate([&](const PowerBalanceSums& s) { return plan.untraced_W + s.escaped_W; });
+  power_balance.escaped_W = estimate(
+      [&](const PowerBalanceSums& s) { return plan.emitted_W - plan.sent_W + s.escaped_W; });
   power_balance.truncated_W = estimate([](const PowerBalanceSums& s) { return s.truncated_W; });
   for (size_t i = 0; i < replicates[0].power_balance.absorbed_lanes_W.size(); ++i) {
     power_balance.absorbed_by_instance_W.push_back(
@@ -367,8 +366,7 @@ PowerBalance make_power_balance(const std::vector<TraceSums>& replicates, const 
   }
   for (const TraceSums& replicate : replicates) {
     const PowerBalanceSums& s = replicate.power_balance;
-    const double gap =
-        std::abs(plan.emitted_W - plan.untraced_W - absorbed(s) - s.escaped_W - s.truncated_W);
+    const double gap = std::abs(plan.sent_W - absorbed(s) - s.escaped_W - s.truncated_W);
     power_balance.closure = std::max(power_balance.closure, gap / plan.emitted_W);
   }
   return power_balance;
@@ -444,7 +442,7 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
   result.sums = sums.bins();
   result.power_balance = make_power_balance(by_replicate, plan);
   result.rays = plan.rays;
-  result.sent_W = plan.emitted_W - plan.untraced_W;
+  result.sent_W = plan.sent_W;
   return result;
 }
 

@@ -39,6 +39,7 @@ std::set<std::string> described_materials(const GltfOptions& options) {
 
 GltfWriterModel as_gltf(std::vector<cad::Part> parts, const CadConventions& conventions) {
   GltfWriterModel model;
+  model.exact_positions = true;  // the file's numbers are decimal
   for (cad::Part& part : parts) {
     for (Vec3& vertex : part.mesh.vertices_m) vertex = in_body_axes(vertex, conventions);
     const auto known = std::ranges::find(model.materials, part.material, &GltfWriterMaterial::name);

@@ -204,6 +204,15 @@ bool is_text(std::string_view bytes) {
          same_word(trimmed(start).substr(0, 5), "solid");
 }
 
+// Text of another kind: a page of the web, a model in another format, a note above the first solid.
+bool is_other_text(std::string_view bytes) {
+  const std::string_view start = bytes.substr(0, 1000);
+  return !start.empty() && std::ranges::all_of(start, [](char c) {
+    return static_cast<unsigned char>(c) >= 0x20 ||
+           std::isspace(static_cast<unsigned char>(c)) != 0;
+  });
+}
+
 }  // namespace
 
 std::vector<Part> read_stl(std::string_view bytes, const std::string& file,
@@ -220,6 +229,12 @@ std::vector<Part> read_stl(std::string_view bytes, const std::string& file,
     constexpr std::string_view ends_of_text = std::string_view("\0\x1A", 2);
     bytes = bytes.substr(0, bytes.find_first_of(ends_of_text));
     parts = TextReader(bytes, file, name).read();
+  } else if (is_other_text(bytes)) {
+    const std::string_view start = trimmed(bytes.substr(0, 40));
+    throw InputError(
+        {file, 1}, "",
+        "text that begins with " + in_quotes(start.substr(0, start.find_first_of(" \t\r\n"))),
+        "an STL file: text that begins with solid, or binary data");
   } else {
     const bool has_count = bytes.size() >= stl_header_bytes + count_bytes;
     throw InputError(

@@ -63,28 +63,6 @@ void require_traceable(const Settings& source, const Beam& beam) {
   }
 }
 
-// A sun sends its rays over a disc about the body's origin that covers the scene at any attitude.
-// Rejects scenes that are much smaller than this disc.
-void require_sunlight_to_land(const ExperimentFile& file, const Scene& scene,
-                              const std::vector<Beam>& beams) {
-  // At this limit one ray in 10,000 meets the scene, and error estimates are still correct.
-  constexpr double most = 100.0;
-  if (std::ranges::none_of(beams, [](const Beam& beam) {
-        return beam.aperture && std::isinf(beam.aperture->radius_m);
-      })) {
-    return;
-  }
-  const Eigen::AlignedBox3d box = scene.box();
-  const double size_m = box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm();
-  if (scene.radius_m() <= most * size_m) return;
-  std::ostringstream found;
-  found.precision(3);
-  found << "a scene that lies " << box.center().norm() << " m from the body's origin and is "
-        << 2.0 * size_m << " m large, of which rays of the sun would miss nearly all";
-  throw InputError({file.path.string()}, "scene.centre_of_rotation_m", found.str(),
-                   "a centre of rotation within 100 times its size");
-}
-
 // Makes the beams. Notices and input files of the sources are added to those of the model.
 std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
   const Scene& scene = model.scene;
@@ -123,7 +101,6 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
     }
     if (at_light) source.finish();
   }
-  require_sunlight_to_land(file, scene, beams);
   for (const Beam& beam : file.further_beams) {
     const Settings lamp(SettingsNode{}, "lamp \"" + beam.name + "\"");
     require_spectrum_inside(lamp, beam, scene.bands);

@@ -204,9 +204,13 @@ class Search {
     if (low_m > near_m || high_m < -near_m) return;
     const bool opposite = one.normal.dot(other.normal) < 0.0;
     const bool two_parts = one.face.instance != other.face.instance;
-    const bool solid = is_solid(one.face.instance), other_solid = is_solid(other.face.instance);
+    const std::optional<bool> inward = fronts_inward(one.face.instance);
+    const std::optional<bool> other_inward = fronts_inward(other.face.instance);
+    const bool solid = inward.has_value(), other_solid = other_inward.has_value();
     const bool coincident = low_m >= -near_m && high_m <= near_m;
-    if (opposite && solid && other_solid && (two_parts || !coincident)) return;
+    // Not a solid and its lining, which is on the same side.
+    const bool touching_solids = opposite && solid && inward == other_inward;
+    if (touching_solids && (two_parts || !coincident)) return;
     const double middle_m = 0.5 * (low_m + high_m);
     bool one_first = one.face < other.face;
     if (std::abs(middle_m) > 1e-3 * near_m) {
@@ -224,19 +228,16 @@ class Search {
         {one_first ? one.face : other.face, one_first ? other.face : one.face, opposite, relation});
   }
 
-  bool is_solid(uint32_t instance) {
-    const auto [entry, is_new] = solid_.try_emplace(instance, false);
-    if (is_new) {
-      const auto faces = faces_of(scene_, std::span(&instance, 1));
-      entry->second = fronts_look_inwards(faces).has_value();
-    }
+  std::optional<bool> fronts_inward(uint32_t instance) {
+    const auto [entry, is_new] = inward_.try_emplace(instance);
+    if (is_new) entry->second = fronts_look_inwards(faces_of(scene_, std::span(&instance, 1)));
     return entry->second;
   }
 
   const Scene& scene_;
   double size_m_;
   std::vector<Pair> pairs_;
-  std::map<uint32_t, bool> solid_;
+  std::map<uint32_t, std::optional<bool>> inward_;  // see fronts_look_inwards()
 };
 
 std::vector<Pair> find_pairs(const Scene& scene, const Vec3& centre_m, double size_m) {

@@ -67,16 +67,22 @@ class Vertices {
       : document_(document),
         accessor_(primitive.attributes.at("POSITION")),
         positions_(document, accessor_, budget) {
+    const auto rest = primitive.attributes.find(position_rest);
+    if (rest != primitive.attributes.end()) rests_.emplace(document, rest->second, budget);
     const auto uv = primitive.attributes.find("TEXCOORD_0");
     if (uv != primitive.attributes.end()) coordinates_.emplace(document, uv->second, budget);
   }
 
   size_t count() const { return positions_.count(); }
   bool have_uv() const { return coordinates_.has_value(); }
+  bool are_single() const { return !rests_; }
 
   Vec3 position(uint32_t vertex) const {
-    const Vec3 p(positions_.number(vertex, 0), positions_.number(vertex, 1),
-                 positions_.number(vertex, 2));
+    Vec3 p(positions_.number(vertex, 0), positions_.number(vertex, 1),
+           positions_.number(vertex, 2));
+    if (rests_) {
+      p += Vec3(rests_->number(vertex, 0), rests_->number(vertex, 1), rests_->number(vertex, 2));
+    }
     if (!p.allFinite()) {
       throw document_.wrong(pointer("accessors", accessor_),
                             "a position that is not finite at element " + std::to_string(vertex),
@@ -93,6 +99,7 @@ class Vertices {
   const Document& document_;
   int accessor_;
   AccessorReader positions_;
+  std::optional<AccessorReader> rests_;
   std::optional<AccessorReader> coordinates_;
 };
 
@@ -169,6 +176,7 @@ std::optional<PrimitiveMesh> GeometryReader::read(int mesh, size_t index) {
                   sizeof(Vec3) + sizeof(Vec2) + sizeof(uint32_t), where);
 
   PrimitiveMesh result;
+  result.is_single = vertices.are_single();
   const std::vector<uint32_t> used =
       add_triangles(triangles_of(all_corners, primitive.mode), vertices, &result);
   for (const uint32_t vertex : used) {

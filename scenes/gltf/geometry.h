@@ -10,6 +10,10 @@
 
 namespace photorque::gltf {
 
+// Attribute of models converted from CAD files: the difference between each position and its value
+// in single precision. The position is the sum of both.
+inline constexpr const char* position_rest = "_POSITION_REST";
+
 // A primitive as a mesh in the frame of its node (glTF axes and units). It contains only the
 // vertices that its triangles use, in order of first use.
 struct PrimitiveMesh {
@@ -18,6 +22,7 @@ struct PrimitiveMesh {
   // largest distance of their corners from the origin, in units of the file
   double degenerate_reach = 0.0;
   bool without_uv = false;  // texture coordinates were left out because some are not finite
+  bool is_single = true;    // positions have single precision
 };
 
 using Triangle = std::array<uint32_t, 3>;

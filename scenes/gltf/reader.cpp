@@ -119,8 +119,35 @@ class Assembly {
       square = std::max(square, vertex.squaredNorm());
     }
     radii_.push_back(std::sqrt(square));
+    if (read->is_single) note_tilts(read->mesh, mesh);
     model_.scene.meshes.push_back(std::move(read->mesh));
     return static_cast<uint32_t>(model_.scene.meshes.size() - 1);
+  }
+
+  // Corners far from the origin of their mesh are rounded, which turns small facets.
+  void note_tilts(const Mesh& mesh, int index) {
+    constexpr double noticeable_rad = 2e-4;
+    double area = 0.0, squares = 0.0, farthest = 0.0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Vec3 &p = mesh.vertices_m[a], &q = mesh.vertices_m[b], &r = mesh.vertices_m[c];
+      const double twice_area = (q - p).cross(r - p).norm();
+      const double longest = std::max({(q - p).norm(), (r - q).norm(), (p - r).norm()});
+      const double largest =
+          std::max({p.cwiseAbs().maxCoeff(), q.cwiseAbs().maxCoeff(), r.cwiseAbs().maxCoeff()});
+      const double rounding = 0x1p-25 * largest;  // rms of the last bit
+      const double tilt_rad = std::min(1.0, rounding * longest / twice_area);
+      area += twice_area;
+      squares += twice_area * tilt_rad * tilt_rad;
+      farthest = std::max(farthest, largest);
+    }
+    const double tilt_rad = std::sqrt(squares / area);
+    if (!(tilt_rad > noticeable_rad)) return;
+    std::ostringstream line;
+    line.precision(2);
+    line << pointer("meshes", index) << ": corners up to " << farthest
+         << " from the mesh's origin have single precision, which turns the facets by about "
+         << 1e3 * tilt_rad << " mrad (rms): move the origin to the mesh and place its node";
+    add_notice(line.str());
   }
 
   void add_instance(const Placement& placement, uint32_t mesh, int material) {

@@ -1,11 +1,13 @@
 #include "scenes/gltf/writer.h"
 
+#include <algorithm>
 #include <bit>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/text/format.h"
+#include "scenes/gltf/geometry.h"
 
 namespace photorque {
 namespace {
@@ -76,19 +78,27 @@ class Buffer {
   Json accessors_ = Json::array();
 };
 
-size_t add_positions(Buffer& buffer, const std::vector<Vec3>& vertices_m) {
-  std::vector<float> numbers;
+// The attribute POSITION and, if positions are exact and need it, gltf::position_rest.
+Json position_attributes(Buffer& buffer, const std::vector<Vec3>& vertices_m, bool exact) {
+  std::vector<float> numbers, rests;
   Eigen::Vector3f low = Eigen::Vector3f::Constant(1e30f), high = -low;
   for (const Vec3& vertex : vertices_m) {
     const Eigen::Vector3f position = to_gltf_axes(vertex).cast<float>();
     low = low.cwiseMin(position);
     high = high.cwiseMax(position);
     for (const float x : position) numbers.push_back(x + 0.0f);  // no negative zeros
+    if (!exact) continue;
+    const Vec3 rest_m = to_gltf_axes(vertex) - position.cast<double>();
+    for (const double x : rest_m) rests.push_back(static_cast<float>(x));
   }
   const size_t index = buffer.add(numbers, type_float, 3, target_vertices);
   buffer.accessor(index)["min"] = {low.x() + 0.0f, low.y() + 0.0f, low.z() + 0.0f};
   buffer.accessor(index)["max"] = {high.x() + 0.0f, high.y() + 0.0f, high.z() + 0.0f};
-  return index;
+  Json attributes = {{"POSITION", index}};
+  if (std::ranges::any_of(rests, [](float rest) { return rest != 0.0f; })) {
+    attributes[gltf::position_rest] = buffer.add(rests, type_float, 3, target_vertices);
+  }
+  return attributes;
 }
 
 size_t add_indices(Buffer& buffer, const Mesh& mesh) {
@@ -103,8 +113,8 @@ size_t add_indices(Buffer& buffer, const Mesh& mesh) {
   return buffer.add(narrow, type_unsigned_short, 1, target_indices);
 }
 
-Json primitive_json(Buffer& buffer, const Mesh& mesh, int material) {
-  Json primitive = {{"attributes", {{"POSITION", add_positions(buffer, mesh.vertices_m)}}}};
+Json primitive_json(Buffer& buffer, const Mesh& mesh, int material, bool exact) {
+  Json primitive = {{"attributes", position_attributes(buffer, mesh.vertices_m, exact)}};
   primitive["indices"] = add_indices(buffer, mesh);
   if (material >= 0) primitive["material"] = material;
   return primitive;
@@ -136,7 +146,8 @@ void write_nodes(const GltfWriterModel& model, Json& document, Buffer& buffer) {
           mesh_indices.try_emplace({node.mesh, node.material}, meshes.size());
       if (is_new) {
         const Mesh& mesh = model.meshes[static_cast<size_t>(node.mesh)];
-        const Json primitives = Json::array({primitive_json(buffer, mesh, node.material)});
+        const Json primitives =
+            Json::array({primitive_json(buffer, mesh, node.material, model.exact_positions)});
         meshes.push_back({{"name", node.name}, {"primitives", primitives}});
       }
       json["mesh"] = entry->second;

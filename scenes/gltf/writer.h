@@ -30,6 +30,8 @@ struct GltfWriterModel {
   std::vector<Mesh> meshes;
   std::vector<GltfWriterMaterial> materials;
   std::vector<GltfWriterNode> nodes;
+  // Adds what single precision leaves of the positions, as gltf::position_rest.
+  bool exact_positions = false;
 };
 
 // Text of a .gltf file with embedded buffer. Positions are rounded to float, as the format

@@ -82,7 +82,7 @@ class Sun : public ParallelLight {
   void emit(const SampleBlock& samples, RayBlock& rays) const override {
     fill_directions(samples, rays);
     fill_disc(radius_m(), samples.bits[0], samples.bits[1], rays.origin_m);
-    place_on_discs(rays);
+    place_on_discs(radius_m(), rays);
   }
 
   double relative_intensity(double angle_rad) const override {

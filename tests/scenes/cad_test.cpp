@@ -222,6 +222,35 @@ TEST(Obj, ManyCornersTakeTheirSquareAtMost) {
   EXPECT_NEAR(area, std::abs(shoelace), 1e-9 * std::abs(shoelace));
 }
 
+// A square of 1 mm at 10 km, where single precision has steps of 1 mm: text keeps all digits.
+TEST(Cad, TextFarFromTheOriginKeepsItsDigits) {
+  const std::string corners[] = {"10000 5 -7000", "10000.001 5 -7000", "10000.001 5.001 -7000"};
+  const std::string triangle =
+      "v " + corners[0] + "\nv " + corners[1] + "\nv " + corners[2] + "\nf 1 2 3\n";
+  const std::string facet = "solid a\nfacet normal 0 0 1\nouter loop\nvertex " + corners[0] +
+                            "\nvertex " + corners[1] + "\nvertex " + corners[2] +
+                            "\nendloop\nendfacet\nendsolid a\n";
+  for (const GltfModel& model : {obj(triangle), stl(facet)}) {
+    EXPECT_NEAR(extent_of(model.scene).area_m2, 0.5e-6, 1e-6 * 0.5e-6);
+    EXPECT_THAT(model.notices, Not(Contains(HasSubstr("single precision"))));
+  }
+}
+
+// Facets of 5 cm, 540 m from the origin: steps of 6e-5 m turn them by about a milliradian.
+TEST(Cad, FacetsThatSinglePrecisionTurnsAreReported) {
+  const auto far_stl = [](float at_m) {
+    std::string bytes = std::string(80, ' ') + word_bytes(1) + std::string(12, '\0');
+    for (const std::array<float, 3>& corner :
+         {std::array{at_m, 0.0f, 0.0f}, {at_m + 0.05f, 0.0f, 0.0f}, {at_m, 0.05f, 0.0f}}) {
+      bytes.append(reinterpret_cast<const char*>(corner.data()), sizeof corner);
+    }
+    return bytes + std::string(2, '\0');
+  };
+  EXPECT_THAT(stl(far_stl(540.0f)).notices,
+              Contains(HasSubstr("turns the facets by about 0.46 mrad")));
+  EXPECT_THAT(stl(far_stl(5.0f)).notices, Not(Contains(HasSubstr("single precision"))));
+}
+
 TEST(Cad, MaterialsAreOfTheExperimentOrReported) {
   const std::string text = "usemtl black\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   EXPECT_THAT(obj(text).notices,
@@ -252,7 +281,10 @@ std::vector<BrokenCad> broken_cad_files() {
   return {
       {"torn", CadFormat::stl, good.substr(0, good.size() - 7),
        "part.stl: found 277 bytes, expected 84 + 50 × 4 bytes"},
-      {"short", CadFormat::stl, "abc", "expected an STL file"},
+      {"short", CadFormat::stl, "abc", "text that begins with \"abc\", expected an STL file"},
+      {"page", CadFormat::stl, "<html>\n" + std::string(200, ' '), "begins with \"<html>\""},
+      {"comment", CadFormat::stl, "# made\n" + facet,
+       "part.stl:1: found text that begins with \"#\""},
       {"empty", CadFormat::stl, "", "found 0 bytes"},
       {"none", CadFormat::stl, "solid a\nendsolid a\n", "found no facet"},
       {"no_number", CadFormat::stl, facet + "0 one 0\nendloop\nendfacet\nendsolid\n",

@@ -24,6 +24,7 @@ class OpticalTruth : public CommandTest {
 TEST_F(OpticalTruth, EdgeOnLightRaisesNoWarning) {
   const Outcome traced =
       succeed("trace " + plate("[1, 0, 0]", "[trace]\nrays = 65536\n") + " --out " + at("o"));
+  succeed("check " + at("plate.toml"));
   EXPECT_THAT(traced.out + traced.err, Not(HasSubstr("WARNING")));
 }
 
@@ -49,16 +50,48 @@ TEST_F(OpticalTruth, ASheetDrawnFromBothSidesCountsOnceAndRaisesNoWarning) {
   EXPECT_THAT(map.out + map.err, Not(HasSubstr("WARNING")));
 }
 
+TEST_F(OpticalTruth, ShippedScenesRaiseNoWarning) {
+  int traced = 0;
+  const fs::path scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
+  for (const auto& file : fs::recursive_directory_iterator(scenes)) {
+    if (file.path().extension() != ".toml") continue;
+    if (file_text(file.path()).find("[[source]]") == std::string::npos) continue;
+    const Outcome got =
+        succeed("trace " + file.path().string() + " --out " + at("o") + " --set trace.rays=65536");
+    EXPECT_THAT(got.out + got.err, Not(HasSubstr("WARNING"))) << file.path();
+    ++traced;
+  }
+  EXPECT_GE(traced, 11);
+}
+
 TEST_F(OpticalTruth, TorqueMapOverTiltsNeedsNoReceiver) {
   succeed("torque-map " +
           plate("[0, 0, -1]", "[torque_map]\ntilt_deg = [0, 30]\nheading_deg = [0]\n") + " --out " +
           at("o"));
 }
 
-TEST_F(OpticalTruth, SunlightOnAFarSceneIsRefused) {
+// A black plate of 1 mm² whose corners are written 10 km from the origin takes up 1000 W/m² and has
+// its force there; the torque is 10 km times the force.
+TEST_F(OpticalTruth, SunlightOnAMillimetreTenKilometresAwayIsRight) {
   const std::string file =
-      plate("[0, 0, -1]", "", "f 1 2 3 4\n", "centre_of_rotation_m = [10000, 0, 0]\n");
-  EXPECT_THAT(refused("trace " + file + " --out " + at("o")), HasSubstr("from the body's origin"));
+      write("far.toml",
+            "[scene]\nfile = \"far.obj\"\nunit = \"m\"\n[[material]]\nname = \"far\"\n"
+            "absorptance = 1\n[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\n"
+            "irradiance_W_m2 = 1000\nangular_radius_deg = 0\n"
+            "[[receiver]]\nnode = \"plate\"\nbins = [2, 2]\n"
+            "[torque_map]\nazimuth_step_deg = 90\nelevation_step_deg = 90\n");
+  write("far.obj",
+        "v 10000 0 0\nv 10000.001 0 0\nv 10000.001 0.001 0\nv 10000 0.001 0\no plate\nf 1 2 3 4\n");
+  succeed("check " + file);
+  const Outcome traced = succeed("trace " + file + " --out " + at("o"));
+  EXPECT_THAT(traced.out + traced.err, Not(HasSubstr("WARNING")));
+  EXPECT_NEAR(figure("power_on_plate_W", "o"), 1e-3, 1e-9);
+  const double force_N = 1e-3 / speed_of_light_m_s;
+  EXPECT_NEAR(figure("force_z_body_body_N", "o"), -force_N, 1e-6 * force_N);
+  EXPECT_NEAR(figure("torque_y_body_body_N_m", "o"), 10000.0005 * force_N, 1e-6 * 1e4 * force_N);
+  const Outcome map = succeed("torque-map " + file + " --out " + at("m"));
+  EXPECT_THAT(map.out, HasSubstr("divided by the pressure 1×10⁻⁶ m2"));
+  EXPECT_THAT(map.out + map.err, Not(HasSubstr("WARNING")));
 }
 
 TEST_F(OpticalTruth, PartsBelowTheResolutionOfRaysAreRefused) {

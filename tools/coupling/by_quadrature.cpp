@@ -82,7 +82,7 @@ class SunlitDirections final : public LightDirections {
     constexpr size_t fresh = 16;
     constexpr uint64_t rays = 1 << 19;
     const std::vector<RigidTransform> attitudes = fresh_directions(fresh, sun_);
-    std::vector<double> square(fresh, 0.0), noise(fresh, 0.0), emitted_W(fresh, 0.0);
+    std::vector<double> square(fresh, 0.0), noise(fresh, 0.0), sent_W(fresh, 0.0);
     parallel_for(fresh, threads, [&](size_t i) {
       const OpticalResult result = run_.run(attitudes[i], {}, rays);
       const WrenchEstimate traced =
@@ -91,7 +91,7 @@ class SunlitDirections final : public LightDirections {
       const Vec3 difference = traced.mean.torque_N_m - own.tail<3>().matrix();
       square[i] = difference.squaredNorm() / 3.0;
       noise[i] = traced.torque_error_N_m().squaredNorm() / 3.0;
-      emitted_W[i] = result.power_balance.emitted_W;
+      sent_W[i] = result.sent_W;
     });
     double squares = 0.0, noises = 0.0;
     for (size_t i = 0; i < fresh; ++i) {
@@ -101,9 +101,9 @@ class SunlitDirections final : public LightDirections {
     // Torque of all the light at the largest arm. Rays are in single precision, so that a torque
     // that is zero by symmetry has an error of 1e-7 of it.
     const double arm_m = run_.experiment().scene.radius_m() + table.about_body_m.norm();
-    const double scale_N_m = arm_m * *std::ranges::max_element(emitted_W) / speed_of_light_m_s;
+    const double scale_N_m = arm_m * *std::ranges::max_element(sent_W) / speed_of_light_m_s;
     const double rounding_N_m = 1e-7 * scale_N_m;
-    const double largest_N_m = std::max(largest_torque_N_m(table), 1e-6 * scale_N_m);
+    const double largest_N_m = std::max(largest_torque_N_m(table), 1e-3 * scale_N_m);
     console.line("  by quadrature over lit pieces, scattered light included; error of the torque " +
                  readable_number(stated_N_m / largest_N_m, 2) + " of the largest (rms); in " +
                  std::to_string(fresh) + " other directions, traced torques differ by " +

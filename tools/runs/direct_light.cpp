@@ -34,13 +34,13 @@ Estimate direct_bin_W(const FluxMapReceiver& map, const BinSums& sums, size_t bi
   return with_bound(estimate_from_replicates(values), bound_W);
 }
 
-// Rays are in single precision: sums that cancel have an error of this fraction of the emitted
-// power.
+// Rays are in single precision: sums that cancel have an error of this fraction of the power that
+// they carry.
 constexpr double ray_rounding = 1e-7;
 
 // `ray_W`: mean power of one ray. `counting_W`: see counting_error_W().
 DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const BinSums& rays,
-                    double ray_W, double counting_W, double emitted_W) {
+                    double ray_W, double counting_W, double sent_W) {
   constexpr double few = 100.0;  // below this number of rays their scatter does not give the error
   constexpr double well_lit = 0.3;  // largest relative error of a bin by rays
   DirectLight light;
@@ -52,7 +52,7 @@ DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const 
   const double sigma = std::hypot(light.gathered_W.standard_error, light.rays_W.standard_error,
                                   std::max(chance_W, counting_W));
   const double difference = light.gathered_W.value - light.rays_W.value;
-  light.difference_sigma = difference / (sigma + ray_rounding * emitted_W);
+  light.difference_sigma = difference / (sigma + ray_rounding * sent_W);
   int bins = 0;
   for (size_t bin = 0; bin < map.grid().bins(); ++bin) {
     const Estimate ray = direct_bin_W(map, rays, bin);
@@ -152,13 +152,13 @@ struct Wanted {
   GatherOptions options;
   bool weigh_cost;
   uint64_t rays;
-  double emitted_W;
+  double sent_W;
   double ray_W;
   DirectRoute& route;
 
   double counting_W;
 
-  double force_N() const { return emitted_W / speed_of_light_m_s; }
+  double force_N() const { return sent_W / speed_of_light_m_s; }
   double counting_N() const { return counting_W / speed_of_light_m_s; }
 
   // Whether quadrature takes less time than rays; otherwise adds a notice.
@@ -191,7 +191,7 @@ void gather_light(const Wanted& wanted, const FluxMapReceiver& map, size_t place
   const Gathered gathered =
       gather_direct(wanted.scene, wanted.lab_from_body, beams, map, wanted.options);
   wanted.route.gathered.push_back(
-      compare(map, gathered, sums, wanted.ray_W, wanted.counting_W, wanted.emitted_W));
+      compare(map, gathered, sums, wanted.ray_W, wanted.counting_W, wanted.sent_W));
   wanted.route.gathered.back().receiver = place;
   replace_direct(gathered, sums);
 }
@@ -232,7 +232,7 @@ DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scen
                        .target_error = effort.target_error.value_or(0.0)},
                       effort.direct == TraceEffort::Direct::automatic && !effort.target_error,
                       result.rays,
-                      result.power_balance.emitted_W,
+                      result.sent_W,
                       result.sent_W / static_cast<double>(result.rays),
                       route,
                       counting_error_W(result, options.replicates)};

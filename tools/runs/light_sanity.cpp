@@ -30,14 +30,14 @@ struct FewRays {
   }
 };
 
-// Fraction of a source's emission: more than the loss through cracks, less than one lamp of a
-// thousand.
+// Fraction of the power that a source sends to the scene: more than the loss through cracks, less
+// than one lamp of a thousand.
 constexpr double noticeable = 1e-3;
 
 std::string inside_of(const Experiment& experiment, const InsideLightReceiver& inside,
-                      const BinSums& sums, double emitted_W) {
+                      const BinSums& sums, double sent_W) {
   for (const auto& part : inside.lit_inside(sums)) {
-    if (part.inside_W.value > noticeable * emitted_W) {
+    if (part.inside_W.value > noticeable * sent_W) {
       return experiment.scene.instances[part.instance].path;
     }
   }
@@ -89,8 +89,7 @@ std::vector<InputError> unlit_receiver_errors(const OpticalRun& run) {
     if (beams.empty()) continue;  // another source has the same name
     const TraceResult result =
         trace(run.scene(), experiment.lab_from_body, beams, few.receivers, few.options);
-    const double emitted_W = result.power_balance.emitted_W;
-    const std::string part = inside_of(experiment, few.inside, result.sums.back(), emitted_W);
+    const std::string part = inside_of(experiment, few.inside, result.sums.back(), result.sent_W);
     if (!part.empty() && is_turned_inwards(experiment.scene, part)) {
       mistakes.push_back({source.where(), "scene.file",
                           "\"" + part + "\", whose faces point inwards: light falls on their backs",
@@ -98,8 +97,10 @@ std::vector<InputError> unlit_receiver_errors(const OpticalRun& run) {
     } else if (!part.empty() && has_place(beams)) {
       mistakes.push_back(
           source.error("position_m", "a place inside of \"" + part + "\"", "one outside of it"));
-    } else if (result.segments == result.rays &&  // a white scene lets all of its light escape, too
-               result.power_balance.escaped_W.value >= (1.0 - rounding) * emitted_W) {
+    } else if (has_place(beams) &&                // a sun may light the edges of sheets alone
+               result.segments == result.rays &&  // a white scene lets all of its light escape, too
+               result.power_balance.escaped_W.value >=
+                   (1.0 - rounding) * result.power_balance.emitted_W) {
       mistakes.push_back(source.error("direction", "light that misses the scene", "light on it"));
     }
     for (size_t i = 0; i < experiment.receivers.size(); ++i) {

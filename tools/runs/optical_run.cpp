@@ -86,7 +86,7 @@ double momentum_disagreement(const OpticalRun& run, const OpticalResult& result)
     const auto i = static_cast<size_t>(k);
     const auto compare = [&](const Estimate& rays, double value, double error, double arm) {
       const double sigma = std::hypot(rays.standard_error, error, counting_N * arm);
-      const double rounding = 1e-7 * arm * power_balance.emitted_W / speed_of_light_m_s;
+      const double rounding = 1e-7 * arm * result.sent_W / speed_of_light_m_s;
       worst = std::max(worst, std::abs(rays.value - value) / (sigma + rounding));
     };
     compare(power_balance.force_N[i], surfaces.mean.force_N[k], surfaces.force_error_N()[k], 1.0);
@@ -273,9 +273,8 @@ const FluxMapReceiver& OpticalRun::flux_map(size_t index) const {
 
 std::string OpticalRun::inside_light(const TraceResult& result) const {
   if (!inside_light_) return "";
-  return describe_inside_light(experiment_.scene,
-                               inside_light_->lit_inside(result.sums[inside_index_]),
-                               result.power_balance.emitted_W);
+  return describe_inside_light(
+      experiment_.scene, inside_light_->lit_inside(result.sums[inside_index_]), result.sent_W);
 }
 
 Product OpticalRun::product(const OpticalResult& result) const {

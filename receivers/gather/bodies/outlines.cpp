@@ -121,12 +121,13 @@ std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m)
   return cuts;
 }
 
-LineGrid::LineGrid(std::vector<Line> lines, const Vec3& travel, double radius_m)
+LineGrid::LineGrid(std::vector<Line> lines, const Vec3& travel, const Ball& ball)
     : lines_(std::move(lines)),
+      centre_m_(ball.centre_m),
       across_(travel.unitOrthogonal()),
       aside_(travel.cross(across_)),
-      low_m_(-radius_m),
-      per_m_(width / (2.0 * radius_m)),
+      low_m_(-ball.radius_m),
+      per_m_(width / (2.0 * ball.radius_m)),
       cells_(width * width),
       seen_(lines_.size(), 0) {
   for (uint32_t i = 0; i < lines_.size(); ++i) add(i);
@@ -139,8 +140,7 @@ int LineGrid::column(double x_m) const {
 // Adds the line to its cells: in each column, to the rows that it crosses there.
 void LineGrid::add(uint32_t index) {
   const Line& line = lines_[index];
-  Vec2 from(across_.dot(line.from_m), aside_.dot(line.from_m));
-  Vec2 to(across_.dot(line.to_m), aside_.dot(line.to_m));
+  Vec2 from = seen(line.from_m), to = seen(line.to_m);
   if (from.x() > to.x()) std::swap(from, to);
   const int first = column(from.x()), last = column(to.x());
   for (int c = first; c <= last; ++c) {
@@ -166,7 +166,7 @@ void LineGrid::over(const TriangleCorners& corners_m, std::vector<Line>& found) 
   found.clear();
   ++question_;
   Eigen::AlignedBox2d box;
-  for (const Vec3& corner : corners_m) box.extend(Vec2(across_.dot(corner), aside_.dot(corner)));
+  for (const Vec3& corner : corners_m) box.extend(seen(corner));
   const double margin = 1e-9 / per_m_;
   for (int c = column(box.min().x() - margin); c <= column(box.max().x() + margin); ++c) {
     for (int r = column(box.min().y() - margin); r <= column(box.max().y() + margin); ++r) {

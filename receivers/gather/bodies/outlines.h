@@ -33,8 +33,8 @@ std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m)
 // over a facet.
 class LineGrid {
  public:
-  // `radius_m`: all lines lie in a ball of this radius about the origin.
-  LineGrid(std::vector<Line> lines, const Vec3& travel, double radius_m);
+  // `ball`: contains all lines.
+  LineGrid(std::vector<Line> lines, const Vec3& travel, const Ball& ball);
 
   const std::vector<Line>& lines() const { return lines_; }
   // Finds the lines that may pass over or under a triangle.
@@ -46,10 +46,14 @@ class LineGrid {
     return static_cast<size_t>(column) * width + static_cast<size_t>(row);
   }
   int column(double x_m) const;
+  // Across the light, from the middle of the ball.
+  Vec2 seen(const Vec3& at_m) const {
+    return {across_.dot(at_m - centre_m_), aside_.dot(at_m - centre_m_)};
+  }
   void add(uint32_t index);
 
   std::vector<Line> lines_;
-  Vec3 across_, aside_;
+  Vec3 centre_m_, across_, aside_;
   double low_m_, per_m_;
   std::vector<std::vector<uint32_t>> cells_;
   std::vector<uint32_t> seen_;  // number of the query that found it last

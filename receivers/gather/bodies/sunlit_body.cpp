@@ -45,7 +45,8 @@ class SunlitBody::Direction {
     const Vec3 travel = lamp_.body_from_emitter().direction(Vec3::UnitZ());
     std::vector<Line> outlines;
     body_.outlines_.in_light(travel, outlines);
-    LineGrid grid(std::move(outlines), travel, body_.scene_.scene().radius_m());
+    LineGrid grid(std::move(outlines), travel,
+                  {scene_centre_m(body_.scene_), 0.5 * scene_diameter_m(body_.scene_)});
     for (uint32_t instance = 0; instance < body_.facets_.instances(); ++instance) {
       const bool outside = lamp_.outside(body_.facets_.ball_of(instance));
       const auto inward = outside ? body_.facets_.inward(instance) : std::nullopt;
