@@ -118,7 +118,7 @@ class Dynamics {
   };
   Instants at(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
               const Lanes* y) const;
-  // The same quantities at one state, in all lanes, with the commands of the model's schedule.
+  // Evaluates them at one state, in all lanes, with the commands of the model's schedule.
   Instants at(const PlatformState& state) const;
 
   // Differences of noiseless readings from the platform's rate and attitude. They exist only if

@@ -14,6 +14,7 @@
 #include "attitude/propagation/sampling.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/attitude/recorded_data.h"
 #include "diagnosis/guess/guess.h"
@@ -343,7 +344,7 @@ TEST(Guess, AVideoOfAPendulumShowsItsPivot) {
   Noise noise(9, 5e-4);
   std::string text = "t\tx\ty\n";
   for (size_t i = 0; i < angle_rad.size(); ++i) {
-    text += written("%.5f\t%.5f\t%.5f\n", interval_s * static_cast<double>(i),
+    text += printed("%.5f\t%.5f\t%.5f\n", interval_s * static_cast<double>(i),
                     pivot_x_m + length_m * std::sin(angle_rad[i]) + noise(),
                     pivot_y_m + length_m * std::cos(angle_rad[i]) + noise());
   }
@@ -370,7 +371,7 @@ TEST(Guess, ATrackIsNoCircle) {
   std::string text = "t_s,x_m,y_m\n";
   for (int i = 0; i < 300; ++i) {
     const double along = 0.4 * std::cos(0.2 * i);
-    text += written("%.2f,%.4f,%.4f\n", 0.05 * i, along + noise(), 0.1 * along + noise());
+    text += printed("%.2f,%.4f,%.4f\n", 0.05 * i, along + noise(), 0.1 * along + noise());
   }
   const std::string toml = guess_experiment({test_file("track.csv", text)}, ".");
   EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"planar\""), Not(HasSubstr("pivot_m"))));
@@ -382,9 +383,9 @@ TEST(Guess, OneCoordinateOrASpeedIsAlongALine) {
           "Data Set 1:Time(s),Data Set 1:Position(m),Data Set 1:Velocity(m/s),Acceleration(m/s²)\n",
       car = "time (s);speed (km/h)\n";
   for (int i = 0; i < 60; ++i) {
-    cart += written("%.3f,%.4f,%.4f,0\n", 0.033 * i, 0.3 + 0.1 * std::cos(0.2 * i),
+    cart += printed("%.3f,%.4f,%.4f,0\n", 0.033 * i, 0.3 + 0.1 * std::cos(0.2 * i),
                     -0.6 * std::sin(0.2 * i));
-    car += written("%d;%.2f\n", i, 50.0 - 0.5 * i);
+    car += printed("%d;%.2f\n", i, 50.0 - 0.5 * i);
   }
   EXPECT_THAT(
       guess_experiment({test_file("cart.csv", cart)}, "."),
@@ -423,7 +424,7 @@ TEST(Guess, APendulumIsNoFreeBodyByItsRates) {
   for (int i = 0; i < 1500; ++i) {
     const double t = 0.02 * i,
                  rate_rad_s = 0.6 * std::exp(-0.5 * c * t) * std::sin(omega * t + 0.7);
-    text += written("%.9g,%.9g,%.9g,%.9g\n", t, 0.06 * rate_rad_s + noise(),
+    text += printed("%.9g,%.9g,%.9g,%.9g\n", t, 0.06 * rate_rad_s + noise(),
                     -0.08 * rate_rad_s + noise(), rate_rad_s + 0.002 + noise());
   }
   EXPECT_THAT(guess_experiment({test_file("phone.csv", text)}, "."),

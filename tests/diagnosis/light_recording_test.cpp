@@ -165,21 +165,31 @@ TEST(LightRecordings, SweepsAreReadAsInstrumentsWriteThem) {
 TEST(LightRecordings, ColumnsMayHaveNamesOfTheFiles) {
   const fs::path file = test_file("named.csv", "ch1,ch2,ref\n0.1,500,900\n0.2,400,900\n");
   EXPECT_FALSE(is_light_recording(file));
-  const LightColumns columns = {
-      {"voltage_V", "ch1"}, {"current_mA", "ch2"}, {"irradiance_W_m2", "ref"}};
+  const RecordingOptions columns{
+      .columns = {{"voltage_V", "ch1"}, {"current_mA", "ch2"}, {"irradiance_W_m2", "ref"}}};
   EXPECT_TRUE(is_light_recording(file, columns));
   const auto sweep = read_light_recording(file, {}, columns);
   ASSERT_EQ(sweep.rows(), 2u);
   EXPECT_NEAR(sweep.current_A[1], 0.4, 1e-15);
   EXPECT_EQ(sweep.irradiance_W_m2[0], 900.0);
   EXPECT_TRUE(sweep.absent_columns.empty());
-  LightColumns misspelt = columns;
-  misspelt["irradiance_W_m2"] = "reff";
+  RecordingOptions misspelt = columns;
+  misspelt.columns["irradiance_W_m2"] = "reff";
   EXPECT_TRUE(read_light_recording(file, {}, misspelt).absent_columns.contains("reff"));
 }
 
+TEST(LightRecordings, AFileWithoutHeaderHasStatedNames) {
+  const fs::path file = test_file("bare.txt", "made by hand\n0.1 500\n0.2 400\n");
+  EXPECT_FALSE(is_light_recording(file));
+  const RecordingOptions names{.header = {"voltage_V", "current_mA"}};
+  EXPECT_TRUE(is_light_recording(file, names));
+  const auto sweep = read_light_recording(file, {}, names);
+  ASSERT_EQ(sweep.rows(), 2u);
+  EXPECT_NEAR(sweep.current_A[1], 0.4, 1e-15);
+}
+
 TEST(LightRecordings, AMisspeltColumnIsAbsentBesideOneOfItsQuantity) {
-  const LightColumns misspelt = {{"current_A", "I_ture"}};
+  const RecordingOptions misspelt{.columns = {{"current_A", "I_ture"}}};
   const fs::path plain = test_file("plain.csv", "voltage_V,current_A\n0.1,5\n0.2,4\n"),
                  instrument =
                      test_file("instrument.csv", "note I_ture\nVolts;Amps\n0.1;5\n0.2;4\n");
@@ -193,7 +203,7 @@ TEST(LightRecordings, ANamedColumnCountsBeforeOthersOfItsQuantity) {
       test_file("both.csv", "voltage_V,current_A,corrected\n0.1,5,5.1\n0.2,4,4.1\n");
   for (const auto& [name, scale] :
        std::map<std::string, double>{{"current_A", 1.0}, {"current_mA", 1e-3}}) {
-    const auto sweep = read_light_recording(file, {}, {{name, "corrected"}});
+    const auto sweep = read_light_recording(file, {}, {.columns = {{name, "corrected"}}});
     EXPECT_NEAR(sweep.current_A[1], 4.1 * scale, 1e-15) << name;
     EXPECT_TRUE(sweep.absent_columns.empty());
   }

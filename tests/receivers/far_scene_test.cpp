@@ -104,8 +104,8 @@ Traced trace_small(const Vec3& at_m, const RigidTransform& lab_from_body, const 
   return found;
 }
 
-// The same lamp, body and light 10 km away: every hit is at the same place to 1e-6 of a part, and
-// powers, maps, forces and torques are the same. The body is turned about its origin.
+// A lamp, a body and its light that are moved by 10 km: every hit stays at its place to 1e-6 of a
+// part, and powers, maps, forces and torques are equal. The body is turned about its origin.
 TEST(FarScene, DistanceChangesNeitherHitsNorPowersNorForces) {
   const Vec3 far_at_m(far_m, -7e3, 3e3);
   const RigidTransform turned{Quat(Eigen::AngleAxisd(0.4, Vec3(1, -2, 0.5).normalized())),

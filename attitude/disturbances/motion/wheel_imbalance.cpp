@@ -38,7 +38,7 @@ constexpr auto position =
               "`static_imbalance_g_cm`",
               dynamic_phase.end())
         .optional();
-// Faster, and the phase loses its digits within a day.
+// At higher speeds the phase would lose its digits within a day.
 constexpr Range largest_rate{-1e6, 1e6};
 constexpr auto speed = ScalarKey("speed_rad_s", largest_rate,
                                  "speed of the wheel relative to the body; without it, that of "

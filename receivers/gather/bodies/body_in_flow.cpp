@@ -13,7 +13,8 @@ class BodyInFlow::Direction {
       : body_(body),
         travel_(travel),
         least_m2_(least_piece * body.facets_.area_m2()),
-        grid_(outlines(), travel, body.scene_.scene().radius_m()) {}
+        grid_(outlines(), travel,
+              {scene_centre_m(body.scene_), 0.5 * scene_diameter_m(body.scene_)}) {}
 
   Result run() {
     for (const Facet& facet : body_.facets_.all()) {
@@ -62,7 +63,7 @@ class BodyInFlow::Direction {
     }
   }
 
-  // Into pieces that are in shadow as a whole or not at all.
+  // Cuts the facet into pieces that are entirely in shadow or entirely lit.
   void cut(const Facet& facet, const Vec3& normal) {
     Screen screen(facet);
     const double rounding_m = plane_rounding * scene_diameter_m(body_.scene_);
@@ -74,7 +75,7 @@ class BodyInFlow::Direction {
     screen.cut({}, least_m2_, parts_);
   }
 
-  // Counts the wrench unless the scene is in the way of molecules that travel along `travel`.
+  // Queues the wrench of molecules that travel along `travel`; it counts if nothing blocks them.
   void test(const Vec3& at_m, const Vec3& normal, const Vec3& travel, const WrenchSum& wrench) {
     ShadowRay ray = probe(body_.scene_, at_m, normal, 4.0 * scene_diameter_m(body_.scene_));
     for (int k = 0; k < 3; ++k) ray.direction[k] = static_cast<float>(-travel[k]);

@@ -307,6 +307,10 @@ DiagnosisRun run_diagnose(const RunOptions& options, const std::vector<fs::path>
              : diagnose_motion(options, recordings, holdouts, console);
 }
 
+namespace {
+
+// The text of a first experiment for recordings without one, to be written to `file`. Throws
+// InputError if `diagnose` could not read it.
 std::string first_experiment(const std::vector<fs::path>& recordings, const fs::path& file,
                              const RecordingOptions& reading) {
   const std::string text = guess_experiment(recordings, file.parent_path(), reading);
@@ -322,6 +326,8 @@ std::string first_experiment(const std::vector<fs::path>& recordings, const fs::
   root.finish();
   return text;
 }
+
+}  // namespace
 
 void write_diagnosis(const DiagnosisRun& run, const std::string& report, const fs::path& folder,
                      const RunFormats& formats) {

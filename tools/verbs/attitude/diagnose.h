@@ -35,11 +35,6 @@ DiagnosisRun run_diagnose(const RunOptions& options,
                           const std::vector<std::filesystem::path>& holdouts,
                           const Console& console);
 
-// The text of a first experiment for recordings without one (guess_experiment()), to be written to
-// `file`. Throws InputError if `diagnose` could not read it.
-std::string first_experiment(const std::vector<std::filesystem::path>& recordings,
-                             const std::filesystem::path& file, const RecordingOptions& reading);
-
 // Writes improved.toml, report.html with the text of `report`, diagnosis.json and, in the
 // additional formats, figures (diagnosis_figures()) into a folder.
 void write_diagnosis(const DiagnosisRun& run, const std::string& report,
