@@ -59,7 +59,8 @@ TEST_F(GuessCommand, ReadsNumbersWithoutHeaderOrTime) {
     const Outcome got = succeed("diagnose " + folder + "/" + name + ".toml --recording " + file +
                                 " --json --quiet --out " + folder + "/out");
     std::map<std::string, double> found;
-    for (const auto& effect : nlohmann::json::parse(got.out)["effects"]) {
+    const auto diagnosis = nlohmann::json::parse(got.out);
+    for (const auto& effect : diagnosis["effects"]) {
       for (const auto& [key, parameter] : effect["parameters"].items()) {
         found[key] = parameter["value"];
       }
