@@ -90,7 +90,7 @@ TEST_F(OpticalTruth, SunlightOnAMillimetreTenKilometresAwayIsRight) {
   EXPECT_NEAR(figure("force_z_body_body_N", "o"), -force_N, 1e-6 * force_N);
   EXPECT_NEAR(figure("torque_y_body_body_N_m", "o"), 10000.0005 * force_N, 1e-6 * 1e4 * force_N);
   const Outcome map = succeed("torque-map " + file + " --out " + at("m"));
-  EXPECT_THAT(map.out, HasSubstr("divided by the pressure 1×10⁻⁶ m2"));
+  EXPECT_THAT(map.out, HasSubstr("divided by the pressure 1.0000×10⁻⁶ m2"));
   EXPECT_THAT(map.out + map.err, Not(HasSubstr("WARNING")));
 }
 
