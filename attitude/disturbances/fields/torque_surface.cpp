@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "attitude/model/disturbance.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/table.h"
@@ -268,15 +267,6 @@ WrenchTable read_wrench_table(const std::filesystem::path& path) {
     table.torque_body_N_m[node] = {file.columns[2][i], file.columns[3][i], file.columns[4][i]};
   }
   return table;
-}
-
-TorqueSurface sphere_of(const Settings& settings, std::string_view key, const std::string& source) {
-  TorqueSurface surface(read_wrench_table(file_of(settings, key)));
-  if (surface.angles() != WrenchTable::Angles::azimuth_elevation) {
-    throw settings.error(key, "a table over tilt and heading",
-                         "one over azimuth and elevation: " + source + " comes from all sides");
-  }
-  return surface;
 }
 
 }  // namespace photorque

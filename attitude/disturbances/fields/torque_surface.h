@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "attitude/model/disturbance.h"
 #include "core/numerics/dual.h"
 #include "core/settings/settings.h"
 #include "core/wrench.h"
@@ -55,7 +56,15 @@ WrenchTable read_wrench_table(const std::filesystem::path& path);
 
 // The table over azimuth and elevation that `key` names. Throws InputError for a table over tilts,
 // because `source` ("the wind") comes from all sides.
-TorqueSurface sphere_of(const Settings& settings, std::string_view key, const std::string& source);
+inline TorqueSurface sphere_of(const Settings& settings, std::string_view key,
+                               const std::string& source) {
+  TorqueSurface surface(read_wrench_table(file_of(settings, key)));
+  if (surface.angles() != WrenchTable::Angles::azimuth_elevation) {
+    throw settings.error(key, "a table over tilt and heading",
+                         "one over azimuth and elevation: " + source + " comes from all sides");
+  }
+  return surface;
+}
 
 // The torque of a surface at a polar angle and the angle around the pole [N m, body axes].
 template <class T>
