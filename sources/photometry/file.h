@@ -58,7 +58,7 @@ PhotometricFile read_photometric(const std::string& bytes, const std::string& na
 
 // Functions shared by the readers: unfolding of symmetric tables, and checks of every table.
 
-// Symmetry by which unstored planes follow from stored ones.
+// Symmetry by which missing planes follow from stored ones.
 enum class PlaneSymmetry {
   none,
   across_0_180,   // mirror images about the plane through 0 and 180 degrees
