@@ -198,6 +198,7 @@ MessageFile::Row MessageFile::row(const KvnItem& item) const {
     throw error(item, "", in_quotes(item.key), "rows of an epoch and numbers");
   }
   const std::vector<std::string_view> words = words_of(item.value);
+  if (words.empty()) throw error(item, "", "an empty row", "an epoch and numbers");
   Row row{std::string(words.front()), {}};
   for (size_t i = 1; i < words.size(); ++i) {
     row.numbers.push_back(require_number(words[i], {path.string(), item.line}, ""));

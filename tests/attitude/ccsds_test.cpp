@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,6 +13,7 @@
 #include "core/errors.h"
 #include "tests/files.h"
 #include "tests/outside.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -183,6 +185,10 @@ TEST(Aem, XmlAndKeywordsAgree) {
   EXPECT_EQ(attitudes[0].line, 6);
   const auto torn = new_file("<?xml version=\"1.0\"?>\n<aem version=\"1.0\">\n<header>\n");
   EXPECT_THROW(read_aem(torn), InputError);
+  std::string rows = file_text(xml);
+  const size_t row = rows.find("<quaternionDerivative>"), end = rows.find("</attitudeState>");
+  const auto empty = new_file(rows.erase(row, end - row));
+  EXPECT_THAT(refusal_of([&] { read_aem(empty); }), testing::HasSubstr(":6: found an empty row"));
   const auto other = new_file("<?xml version=\"1.0\"?>\n<opm version=\"1.0\"/>\n");
   EXPECT_FALSE(is_message(other, "AEM"));
 }
