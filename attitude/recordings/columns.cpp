@@ -150,12 +150,6 @@ constexpr const char* gyro_names[] = {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_ra
 constexpr const char* euler_names[] = {"roll_rad", "pitch_rad", "yaw_rad"};
 constexpr const char* angle_names[] = {"angle_rad", "roll_rad", "pitch_rad", "yaw_rad"};
 constexpr const char* event_names[] = {"thruster", "impulse", "event"};
-// Channels that Recording::schedule() uses.
-constexpr const char* schedule_names[] = {
-    "command_x_N_m", "command_y_N_m",    "command_z_N_m",     "command_x_N",
-    "command_y_N",   "command_body_x_N", "command_body_y_N",  "wheel_x_rad_s",
-    "wheel_y_rad_s", "wheel_z_rad_s",    "battery_current_A", "led_current_A"};
-
 // Index of the axis: 0, 1 or 2 for x, y or z.
 size_t index_of(const Vec3& axis) {
   Eigen::Index k = 0;
@@ -204,7 +198,7 @@ const Channel* MotionColumns::take(const std::string& name) {
 MotionColumns::MotionColumns(const Recording& recording, const Platform& platform,
                              const std::string& name)
     : recording_(recording), platform_(platform) {
-  for (const char* known : schedule_names) take(known);
+  for (const char* known : schedule_channels) take(known);
   for (const char* known : event_names) {
     if (event_ == nullptr) event_ = take(known);
   }

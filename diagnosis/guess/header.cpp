@@ -3,7 +3,7 @@
 #include <cctype>
 #include <cstdint>
 
-#include "attitude/recordings/named_columns.h"
+#include "attitude/recordings/text_lines.h"
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
 

@@ -8,7 +8,7 @@
 #include "attitude/observation/noise_levels.h"
 #include "attitude/recordings/columns.h"
 #include "attitude/recordings/kvn.h"
-#include "attitude/recordings/named_columns.h"
+#include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/linear.h"

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "attitude/recordings/kvn.h"
-#include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
 #include "core/settings/settings.h"

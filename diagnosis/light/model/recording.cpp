@@ -7,7 +7,6 @@
 #include <optional>
 #include <unordered_set>
 
-#include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
 #include "core/numerics/median.h"

@@ -8,7 +8,6 @@
 #include <optional>
 #include <set>
 
-#include "attitude/recordings/named_columns.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/parse.h"
