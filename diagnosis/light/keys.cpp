@@ -20,27 +20,18 @@ Key key_of(const EffectParameter& parameter) {
 }
 
 std::vector<Key> place_keys(LightEffectKind::Index index) {
-  const auto number_of = [](const char* what) {
-    return std::vector<Key>{IntegerKey("index", 0, most, what, {.varies = true})};
-  };
-  switch (index) {
-    case LightEffectKind::Index::none:
-      return {};
-    case LightEffectKind::Index::lamp:
-      return number_of("number of the LED, from 0, over all sources in the order of the file");
-    case LightEffectKind::Index::cell:
-      return number_of("number of the cell: row · columns + column, from 0");
-    case LightEffectKind::Index::string:
-      return number_of("number of the string along the serpentine, from 0");
-    case LightEffectKind::Index::bypass:
-      return number_of("number of the bypass diode along the serpentine, from 0");
-    case LightEffectKind::Index::wall:
-      return {TextKey("node", "node of the wall in the scene")};
-    case LightEffectKind::Index::frame:
-      return {
-          Key::choice_or("axes", words({"lab", "body"}), 0, "axes to which the object is fixed")};
+  using Index = LightEffectKind::Index;
+  if (index == Index::none) return {};
+  if (index == Index::wall) return {TextKey("node", "node of the wall in the scene")};
+  if (index == Index::frame) {
+    return {Key::choice_or("axes", words({"lab", "body"}), 0, "axes to which the object is fixed")};
   }
-  return {};
+  const char* const number =
+      index == Index::lamp ? "number of the LED, from 0, over all sources in the order of the file"
+      : index == Index::cell   ? "number of the cell: row · columns + column, from 0"
+      : index == Index::string ? "number of the string along the serpentine, from 0"
+                               : "number of the bypass diode along the serpentine, from 0";
+  return {IntegerKey("index", 0, most, number, {.varies = true})};
 }
 
 }  // namespace

@@ -14,36 +14,20 @@ namespace photorque {
 namespace {
 
 size_t index_of(const Settings& effect, const LightEffectKind& kind, const LightParts& parts) {
-  size_t count = 0;
-  switch (kind.index) {
-    case LightEffectKind::Index::none:
-      return 0;
-    case LightEffectKind::Index::lamp:
-      count = parts.lamps;
-      break;
-    case LightEffectKind::Index::cell:
-      count = parts.cells();
-      break;
-    case LightEffectKind::Index::string:
-      count = parts.strings();
-      break;
-    case LightEffectKind::Index::bypass:
-      count = parts.bypasses();
-      break;
-    case LightEffectKind::Index::frame:
-      return effect.choice_or("axes", {"lab", "body"}, 0);
-    case LightEffectKind::Index::wall: {
-      const std::string node = effect.text("node");
-      std::set<std::string> nodes;
-      for (size_t w = 0; w < parts.walls.size(); ++w) {
-        if (parts.walls[w].node == node) return w;
-        nodes.insert(parts.walls[w].node);
-      }
-      throw effect.error(
-          "node", "\"" + node + "\"",
-          "a node of the scene other than the receiver: " + listed_names(nodes, node));
+  using Index = LightEffectKind::Index;
+  if (kind.index == Index::none) return 0;
+  if (kind.index == Index::frame) return effect.choice_or("axes", {"lab", "body"}, 0);
+  if (kind.index == Index::wall) {
+    const std::string node = effect.text("node");
+    std::set<std::string> nodes;
+    for (size_t w = 0; w < parts.walls.size(); ++w) {
+      if (parts.walls[w].node == node) return w;
+      nodes.insert(parts.walls[w].node);
     }
+    throw effect.error("node", "\"" + node + "\"",
+                       "a node of the scene other than the receiver: " + listed_names(nodes, node));
   }
+  const size_t count = parts.count_of(kind.index);
   if (count == 0) {
     throw effect.error(
         "kind", "\"" + kind.name + "\"",
