@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "core/numerics/linear.h"
 #include "core/settings/settings.h"
 
 namespace photorque {
@@ -109,8 +108,7 @@ FoundEffect found_light_effect(const LightTrial& trial, const LightCandidates& a
   effect.explanation = c.kind.explanation;
   if (c.kind.index == LightEffectKind::Index::wall) {
     effect.texts.emplace_back("node", all.lab->walls()[c.index].node);
-  } else if (c.kind.index != LightEffectKind::Index::none &&
-             c.kind.index != LightEffectKind::Index::frame) {
+  } else if (c.kind.is_numbered()) {
     effect.parameters.push_back({"index", {static_cast<double>(c.index)}, {}});
   }
   if (is_dark(trial, all, which)) {
@@ -223,8 +221,7 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
       H += J.transpose() * J;
       g += J.transpose() * s.residuals;
     }
-    H.diagonal() *= 1.0 + 1e-9;
-    const double gain = g.dot(solve_symmetric(H, g).col(0)) - static_cast<double>(g.size());
+    const double gain = linear_gain(H, g) - static_cast<double>(g.size());
     if (std::isfinite(gain)) {
       strength[c.variable] = std::max(strength[c.variable], std::clamp(gain / beyond, 0.0, 1.0));
     }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numerics/linear.h"
 #include "core/numerics/order.h"
 #include "core/parallel.h"
 
@@ -68,8 +67,7 @@ double gain_alone(const LightCandidate& c, const std::vector<double>& start,
     H += J.transpose() * J;
     g += J.transpose() * l.residuals;
   }
-  H.diagonal().array() *= 1.0 + 1e-9;
-  const double gain = g.dot(solve_symmetric(H, g).col(0));
+  const double gain = linear_gain(H, g);
   return std::isfinite(gain) ? gain : 0.0;
 }
 
