@@ -2,21 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 
 namespace photorque {
 
-double light_of(const ModuleSweep& sweep, const ModuleNominal& nominal) {
-  double best = 0.0, nearest = 1e300;
-  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-    if (std::abs(sweep.voltage_V[i]) > nearest) continue;
-    nearest = std::abs(sweep.voltage_V[i]);
-    best = sweep.current_A[i];
+namespace {
+
+// The current at the voltage nearest to zero; 0 without points.
+double short_circuit_A(const std::vector<double>& voltage_V, const std::vector<double>& current_A) {
+  double found_A = 0.0, nearest_V = INFINITY;
+  for (size_t i = 0; i < voltage_V.size(); ++i) {
+    if (std::abs(voltage_V[i]) > nearest_V) continue;
+    nearest_V = std::abs(voltage_V[i]);
+    found_A = current_A[i];
   }
-  return std::max(best / nominal.cell.photocurrent_A, 1e-3);
+  return found_A;
+}
+
+}  // namespace
+
+double light_of(const ModuleSweep& sweep, const ModuleNominal& nominal) {
+  return std::max(short_circuit_A(sweep.voltage_V, sweep.current_A) / nominal.cell.photocurrent_A,
+                  1e-3);
 }
 
 void require_plausible(const ModuleSweep& sweep, const ModuleDesign& design,
@@ -30,20 +40,18 @@ void require_plausible(const ModuleSweep& sweep, const ModuleDesign& design,
   for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
     if (sweep.current_A[i] >= 0.0) seen_V = std::max(seen_V, sweep.voltage_V[i]);
   }
-  char found[160];
   constexpr double most_suns = 20.0, most_V = 1.25;
   if (light > most_suns) {
-    std::snprintf(found, sizeof found, "%.3g times the current of the reference module", light);
-    throw InputError({sweep.name}, "current_A", found,
+    throw InputError({sweep.name}, "current_A",
+                     printed("%.3g times the current of the reference module", light),
                      "amperes (a column in milliamperes is named current_mA)");
   }
   if (seen_V > most_V * open_V) {
-    std::snprintf(found, sizeof found,
-                  "%.3g V at a current, where the reference module gives %.3g V at none", seen_V,
-                  open_V);
     const double exchanged = light * cell.photocurrent_A / open_V;
     constexpr double alike = 0.15;
-    throw InputError({sweep.name}, "voltage_V", found,
+    throw InputError({sweep.name}, "voltage_V",
+                     printed("%.3g V at a current, where the reference module gives %.3g V at none",
+                             seen_V, open_V),
                      std::abs(exchanged - 1.0) < alike
                          ? "the voltage: the columns of voltage and current look exchanged"
                          : "volts of the module of the experiment (a column in millivolts is named "
@@ -52,12 +60,7 @@ void require_plausible(const ModuleSweep& sweep, const ModuleDesign& design,
 }
 
 void require_current_forward(const LightRecording& recording) {
-  double nearest_V = INFINITY, short_A = 0.0;
-  for (size_t i = 0; i < recording.rows(); ++i) {
-    if (std::abs(recording.voltage_V[i]) > nearest_V) continue;
-    nearest_V = std::abs(recording.voltage_V[i]);
-    short_A = recording.current_A[i];
-  }
+  const double short_A = short_circuit_A(recording.voltage_V, recording.current_A);
   double largest_A = 0.0;
   for (const double current_A : recording.current_A)
     largest_A = std::max(largest_A, std::abs(current_A));
