@@ -13,10 +13,11 @@ namespace photorque {
 namespace {
 
 ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const ModuleNominal& nominal,
-                 const ModuleDiagnoseOptions& options, DataQuality& quality) {
+                 DataQuality& quality) {
+  constexpr size_t max_points = 160;  // longer curves are thinned
   int64_t dropped = 0;
   require_current_forward(r);
-  ModuleRun run{module_sweep(r, design, options.max_points, &dropped)};
+  ModuleRun run{module_sweep(r, design, max_points, &dropped)};
   run.sweep.temperature_K = r.has_temperatures ? median_of(r.temperature_K) : design.temperature_K;
   run.irradiance_W_m2 = median_of(r.irradiance_W_m2);
   require_plausible(run.sweep, design, nominal);
@@ -46,16 +47,15 @@ ModuleData of_one_curve(const ModuleRun& whole) {
 // hypotheses are fitted. `light` returns the light of each curve relative to the reference, as
 // fitted with the nominal model.
 std::vector<Diagnosis> each_curve(const ModuleDesign& design, const ModuleNominal& nominal,
-                                  const ModuleData& all, const ModuleDiagnoseOptions& options,
+                                  const ModuleData& all, int threads, const Thresholds& limits,
                                   std::vector<double>& light) {
   const std::vector<ModuleHypothesis> hypotheses = module_hypotheses(design, nominal);
   std::vector<Diagnosis> each;
   for (const ModuleRun& curve : all.whole) {
     const ModuleData data = of_one_curve(curve);
-    const ModuleAnswer answer =
-        explain_module(design, nominal, hypotheses, data, options.threads, options.limits);
+    const ModuleAnswer answer = explain_module(design, nominal, hypotheses, data, threads, limits);
     light.push_back(std::exp(answer.trials.front().fit.at[0]));
-    each.push_back(described(design, nominal, answer, data, options.limits));
+    each.push_back(described(design, nominal, answer, data, limits));
     Diagnosis& d = each.back();
     const std::string name = std::filesystem::path(curve.sweep.name).filename().string();
     for (FoundEffect& effect : d.effects) effect.texts.emplace_back("curve", name);
@@ -68,9 +68,9 @@ std::vector<Diagnosis> each_curve(const ModuleDesign& design, const ModuleNomina
 }  // namespace
 
 Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRecording>& recordings,
-                          const std::vector<LightRecording>& holdouts,
-                          const ModuleDiagnoseOptions& options) {
+                          const std::vector<LightRecording>& holdouts, int threads) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
+  const Thresholds limits;
   const ModuleNominal nominal = nominal_module(design);
   ModuleData data;
   DataQuality quality;
@@ -78,7 +78,7 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
     for (const LightRecording& file : files) {
       require_curve(file);
       for (const LightRecording& curve : sweeps_of(file)) {
-        runs.push_back(run_of(curve, design, nominal, options, quality));
+        runs.push_back(run_of(curve, design, nominal, quality));
         data.whole.push_back(runs.back());
       }
     }
@@ -99,7 +99,7 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   bool is_done = false;
   if (holdouts.empty() && data.whole.size() > 1) {
     std::vector<double> light;
-    std::vector<Diagnosis> each = each_curve(design, nominal, data, options, light);
+    std::vector<Diagnosis> each = each_curve(design, nominal, data, threads, limits, light);
     const auto differing = static_cast<size_t>(std::ranges::count_if(
         each, [](const Diagnosis& one) { return one.verdict != Verdict::consistent; }));
     const bool is_even = differing == 0 || differing == each.size();
@@ -110,9 +110,9 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
     }
   }
   if (!is_done) {
-    const ModuleAnswer answer = explain_module(design, nominal, module_hypotheses(design, nominal),
-                                               data, options.threads, options.limits);
-    d = described(design, nominal, answer, data, options.limits);
+    const ModuleAnswer answer =
+        explain_module(design, nominal, module_hypotheses(design, nominal), data, threads, limits);
+    d = described(design, nominal, answer, data, limits);
     d.sentence = module_sentence(d);
     const inference::Fit& fit = answer.joint[answer.decision.chosen].fit;
     std::vector<double> light;
