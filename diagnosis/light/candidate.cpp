@@ -19,15 +19,10 @@ void add_numbers(LightCandidate& c) {
 
 bool can_show(const LightEffectKind& kind, const std::vector<FittedRun>& runs) {
   return std::ranges::any_of(runs, [&](const FittedRun& r) {
-    switch (r.run->recording().kind) {
-      case LightRecording::Kind::scan:
-        return kind.in_scans;
-      case LightRecording::Kind::sweep:
-        return kind.in_sweeps;
-      case LightRecording::Kind::run:
-        return kind.in_runs;
-    }
-    return false;
+    const LightRecording::Kind of = r.run->recording().kind;
+    return of == LightRecording::Kind::scan    ? kind.in_scans
+           : of == LightRecording::Kind::sweep ? kind.in_sweeps
+                                               : kind.in_runs;
   });
 }
 

@@ -87,11 +87,10 @@ ShadedRegion shaded_region(const LightTrial& trial, const LightCandidates& all, 
 
 void add_shadow(const LightTrial& trial, const LightCandidates& all, size_t which,
                 const std::vector<FittedRun>& runs, FoundEffect& effect) {
-  const FittedRun* scan = nullptr;
-  for (const FittedRun& run : runs) {
-    if (run.run->recording().kind == LightRecording::Kind::scan && scan == nullptr) scan = &run;
-  }
-  if (scan == nullptr) return;
+  const auto scan = std::ranges::find_if(runs, [](const FittedRun& run) {
+    return run.run->recording().kind == LightRecording::Kind::scan;
+  });
+  if (scan == runs.end()) return;
   const ShadedRegion region = shaded_region(trial, all, which, *scan);
   effect.parameters.push_back({"u_m", {region.u_low, region.u_high}, {}});
   effect.parameters.push_back({"v_m", {region.v_low, region.v_high}, {}});
@@ -198,26 +197,21 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
                                                  const std::vector<FittedRun>& runs) {
   std::map<std::string, double> strength;
   double chi2 = 0.0, samples = 0.0;
-  std::vector<Eigen::VectorXd> residuals;
   for (const FittedRun& run : runs) {
-    residuals.push_back(residuals_of(about, all, run));
-    chi2 += residuals.back().squaredNorm();
-    samples += static_cast<double>(residuals.back().size());
+    const Eigen::VectorXd residuals = residuals_of(about, all, run);
+    chi2 += residuals.squaredNorm();
+    samples += static_cast<double>(residuals.size());
   }
   const double beyond = std::max(1.0, chi2 - samples);
   for (size_t i = 0; i < all.list.size(); ++i) {
     const LightCandidate& c = all[i];
     if (!c.is_empirical() || !c.is_linear()) continue;
-    Eigen::MatrixXd H;
-    Eigen::VectorXd g;
+    const auto n = static_cast<Eigen::Index>(c.fitted());
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
     for (const FittedRun& run : runs) {
       const LightSlopes s = slopes_of(about, all, {{i, {c.start()}}}, run);
-      const auto n = static_cast<Eigen::Index>(c.fitted());
       const Eigen::MatrixXd J = s.slopes.rightCols(n);
-      if (H.size() == 0) {
-        H = Eigen::MatrixXd::Zero(n, n);
-        g = Eigen::VectorXd::Zero(n);
-      }
       H += J.transpose() * J;
       g += J.transpose() * s.residuals;
     }
