@@ -248,10 +248,8 @@ std::vector<Where::ChannelMisfit> misfits(const LightAnswer& answer,
   for (const FittedRun& run : runs) {
     const Eigen::VectorXd r = residuals_of(answer.trials.front(), answer.all, run);
     for (Eigen::Index i = 0; i < r.size(); ++i) {
-      auto& [chi2, count] = sums[run.run
-                                     ->channels()[static_cast<size_t>(
-                                         run.run->sample_channel()[static_cast<size_t>(i)])]
-                                     .name];
+      const int channel = run.run->sample_channel()[static_cast<size_t>(i)];
+      auto& [chi2, count] = sums[run.run->channels()[static_cast<size_t>(channel)].name];
       chi2 += r[i] * r[i];
       ++count;
     }
