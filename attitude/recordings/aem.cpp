@@ -7,6 +7,7 @@
 #include "attitude/environment/epoch.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -64,18 +65,17 @@ const AttitudeType* type_of(const Segment& segment) {
   return found != attitude_types.end() ? found : nullptr;
 }
 
-class AemReader {
+class AemReader : MessageFile {
  public:
-  explicit AemReader(const std::filesystem::path& path)
-      : path_(path), message_(read_message(path)) {}
+  using MessageFile::MessageFile;
 
-  AttitudeEphemeris read() {
+  AttitudeEphemeris read() const {
     AttitudeEphemeris aem;
-    aem.version = required(message_, "CCSDS_AEM_VERS");
-    aem.creation_date = required(message_, "CREATION_DATE");
-    aem.originator = required(message_, "ORIGINATOR");
+    aem.version = required(message, {"CCSDS_AEM_VERS"}).value;
+    aem.creation_date = required(message, {"CREATION_DATE"}).value;
+    aem.originator = required(message, {"ORIGINATOR"}).value;
     const KvnItem* meta = nullptr;
-    for (const KvnItem& item : message_.items) {
+    for (const KvnItem& item : message.items) {
       if (item.kind == KvnItem::Kind::comment) aem.comments.push_back(item.value);
       if (item.kind != KvnItem::Kind::block) continue;
       if (item.key == "META") {
@@ -84,129 +84,98 @@ class AemReader {
         aem.segments.push_back(read_segment(*meta, item));
         meta = nullptr;
       } else {
-        throw error(item, item.key + "_START", "META_START and DATA_START in turn");
+        throw error(item, "", item.key + "_START", "META_START and DATA_START in turn");
       }
     }
-    if (aem.segments.empty()) throw error(message_, "no segment", "META and DATA blocks");
+    if (aem.segments.empty()) throw error(message, "", "no segment", "META and DATA blocks");
     return aem;
   }
 
  private:
-  InputError error(const KvnItem& at, const std::string& found, const std::string& expected) const {
-    return {{path_.string(), at.line}, "", found, expected};
-  }
-
-  std::string required(const KvnItem& block, const char* name) const {
-    const std::string* value = block.find(name);
-    if (value == nullptr) {
-      throw InputError({path_.string(), block.line}, name, "nothing", "a value");
-    }
-    return *value;
-  }
-
   Segment read_segment(const KvnItem& meta, const KvnItem& data) const {
     Segment segment;
     for (const Keyword& keyword : keywords) {
-      const std::string* value = meta.find(keyword.name);
-      if (value != nullptr) {
-        segment.*keyword.member = *value;
-      } else if (keyword.required) {
-        required(meta, keyword.name);
-      }
+      const KvnItem* item =
+          keyword.required ? &required(meta, {keyword.name}) : meta.find({keyword.name});
+      if (item != nullptr) segment.*keyword.member = item->value;
     }
     for (const KvnItem& item : meta.items) {
       if (item.kind == KvnItem::Kind::comment) segment.comments.push_back(item.value);
-      if (item.kind == KvnItem::Kind::assignment && !is_known(item.key)) {
-        throw error(item, item.key, "a keyword of AEM metadata");
+      const bool is_known = std::ranges::find(keywords, item.key, &Keyword::name) != keywords.end();
+      if (item.kind == KvnItem::Kind::assignment && !is_known) {
+        throw error(item, "", item.key, "a keyword of AEM metadata");
       }
     }
-    if (required(message_, "CCSDS_AEM_VERS").starts_with("1")) required(meta, "ATTITUDE_DIR");
+    if (message.find({"CCSDS_AEM_VERS"})->value.starts_with("1")) required(meta, {"ATTITUDE_DIR"});
     if (segment.attitude_dir != "A2B" && segment.attitude_dir != "B2A") {
-      throw error(meta, segment.attitude_dir, "ATTITUDE_DIR = A2B or B2A");
+      throw error(meta, "", segment.attitude_dir, "ATTITUDE_DIR = A2B or B2A");
     }
-    size_t length = 0;
+    const AttitudeType* type = type_of(segment);
     for (const KvnItem& item : data.items) {
       if (item.kind == KvnItem::Kind::comment) continue;
-      if (item.kind != KvnItem::Kind::data) {
-        throw error(item, in_quotes(item.key), "rows of an epoch and numbers");
-      }
-      const std::vector<std::string_view> words = words_of(item.value);
-      segment.rows.push_back(
-          {std::string(words.front()), kvn_numbers(words, 1, path_, item.line), item.line});
-      const size_t now = segment.rows.back().values.size();
-      if (length == 0) length = expected_length(segment, now);
+      Row of = row(item);
+      segment.rows.push_back({std::move(of.epoch), std::move(of.numbers), item.line});
+      // For types that are not read as attitudes, all rows must have the length of the first.
+      const size_t now = segment.rows.back().values.size(),
+                   length = type != nullptr ? type->numbers : segment.rows.front().values.size();
       if (now != length) {
-        throw error(item, std::to_string(now) + " numbers",
+        throw error(item, "", std::to_string(now) + " numbers",
                     std::to_string(length) + " after the epoch");
       }
     }
     return segment;
   }
-
-  static bool is_known(const std::string& key) {
-    for (const Keyword& keyword : keywords) {
-      if (key == keyword.name) return true;
-    }
-    return false;
-  }
-
-  // For types that are not read as attitudes, all rows must have the length of the first.
-  static size_t expected_length(const Segment& segment, size_t first) {
-    const AttitudeType* type = type_of(segment);
-    return type != nullptr ? type->numbers : first;
-  }
-
-  std::filesystem::path path_;
-  KvnItem message_;
 };
-
-InputError wrong(const std::string& key, const std::string& found, const std::string& expected) {
-  return {{}, key, found, expected};
-}
 
 // Successive rotations about the axes of `sequence` ("321" or "ZYX"), each about an axis of the
 // frame that the previous rotations rotated.
-Quat from_euler(const std::string& sequence, const std::vector<double>& angles_deg) {
+Quat from_euler(const std::string& sequence, const std::vector<double>& angles_deg,
+                const InputLocation& where) {
+  const auto axes = axes_of_sequence(sequence);
+  if (!axes) throw InputError(where, "EULER_ROT_SEQ", sequence, "three axes, as 321");
   Quat q = Quat::Identity();
-  if (sequence.size() != 3) throw wrong("EULER_ROT_SEQ", sequence, "three axes, as 321");
-  for (size_t i = 0; i < 3; ++i) {
-    const char c = sequence[i];
-    const int axis = c >= 'X' && c <= 'Z' ? c - 'X' : c - '1';
-    if (axis < 0 || axis > 2) throw wrong("EULER_ROT_SEQ", sequence, "three axes, as 321");
-    q = q * Quat(Eigen::AngleAxisd(angles_deg[i] * degree_rad, Vec3::Unit(axis)));
+  for (size_t i = 0; i < axes->size(); ++i) {
+    q = q * Quat(Eigen::AngleAxisd(angles_deg[i] * degree_rad, Vec3::Unit((*axes)[i])));
   }
   return q;
 }
 
-Quat to_quaternion(const Segment& segment, const AttitudeEphemeris::Row& row) {
-  const std::vector<double>& v = row.values;
-  const AttitudeType* type = type_of(segment);
-  if (type == nullptr) {
-    throw wrong("ATTITUDE_TYPE", segment.attitude_type,
-                "QUATERNION or EULER_ANGLE, or one of them with /DERIVATIVE, /RATE or /ANGVEL");
-  }
-  if (type->is_euler) return from_euler(segment.euler_rot_seq, v);
+Quat to_quaternion(const Segment& segment, const AttitudeType& type, const std::vector<double>& v,
+                   const InputLocation& where) {
+  if (type.is_euler) return from_euler(segment.euler_rot_seq, v, where);
   const bool first = segment.quaternion_type == "FIRST";
   const Quat q = first ? Quat(v[0], v[1], v[2], v[3]) : Quat(v[3], v[0], v[1], v[2]);
   if (!(std::abs(q.norm() - 1.0) < 0.01)) {
-    throw wrong(row.epoch, "a quaternion of norm " + shortest(q.norm()), "unit norm");
+    throw InputError(where, "", "a quaternion of norm " + shortest(q.norm()), "unit norm");
   }
   return q.normalized();
 }
 
+Epoch epoch_of(const std::string& text, const InputLocation& where) {
+  const std::optional<Epoch> epoch = parse_epoch(text);
+  if (!epoch) throw InputError(where, "epoch", text, "a time as 2000-01-01T12:00:00");
+  return *epoch;
+}
+
 }  // namespace
 
-std::vector<Segment::Sample> Segment::attitudes() const {
+std::vector<Segment::Sample> Segment::attitudes(const std::filesystem::path& file) const {
+  const AttitudeType* type = type_of(*this);
+  if (type == nullptr) {
+    throw InputError({file.string()}, "ATTITUDE_TYPE", attitude_type,
+                     "QUATERNION or EULER_ANGLE, or one of them with /DERIVATIVE, /RATE or "
+                     "/ANGVEL");
+  }
   std::vector<Sample> samples;
   std::optional<Epoch> first;
   for (const Row& row : rows) {
-    const std::optional<Epoch> epoch = parse_epoch(row.epoch);
-    if (!epoch) throw wrong("epoch", row.epoch, "a time as 2000-01-01T12:00:00");
+    const InputLocation where{file.string(), row.line};
+    const Epoch epoch = epoch_of(row.epoch, where);
     if (!first) first = epoch;
-    Quat q = to_quaternion(*this, row);
+    Quat q = to_quaternion(*this, *type, row.values, where);
     if (attitude_dir == "B2A") q = q.conjugate();
-    samples.push_back({epoch->seconds_since(*first), q});
-    if (!type_of(*this)->ends_in_rate) continue;
+    samples.push_back({epoch.seconds_since(*first), q});
+    if (!type->ends_in_rate) continue;
     const double* rate = row.values.data() + row.values.size() - 3;
     const Vec3 rate_rad_s = degree_rad * Vec3(rate[0], rate[1], rate[2]);
     const bool is_in_a = angvel_frame == ref_frame_a && ref_frame_a != ref_frame_b;
@@ -215,17 +184,8 @@ std::vector<Segment::Sample> Segment::attitudes() const {
   return samples;
 }
 
-bool is_body_frame(const std::string& frame) {
-  return frame.starts_with("SC_BODY") || frame.starts_with("ACTUATOR") ||
-         frame.starts_with("INSTRUMENT") || frame.starts_with("SENSOR");
-}
-
 std::vector<AemAttitude> aem_attitudes(const std::filesystem::path& path) {
-  return aem_attitudes(read_aem(path), path);
-}
-
-std::vector<AemAttitude> aem_attitudes(const AttitudeEphemeris& aem,
-                                       const std::filesystem::path& path) {
+  const AttitudeEphemeris aem = read_aem(path);
   const Segment& first = aem.segments.front();
   std::vector<AemAttitude> all;
   std::optional<Epoch> begin;
@@ -237,23 +197,19 @@ std::vector<AemAttitude> aem_attitudes(const AttitudeEphemeris& aem,
     }
     const bool is_from_lab =
         is_body_frame(segment.ref_frame_a) && !is_body_frame(segment.ref_frame_b);
-    try {
-      const std::vector<Segment::Sample> samples = segment.attitudes();
-      for (size_t i = 0; i < samples.size(); ++i) {
-        const std::optional<Epoch> epoch = parse_epoch(segment.rows[i].epoch);
-        if (!begin) begin = epoch;
-        const Quat& q = samples[i].a_from_b;
-        AemAttitude attitude{epoch->seconds_since(*begin), is_from_lab ? Quat(q.conjugate()) : q,
-                             samples[i].rate_rad_s, segment.rows[i].line};
-        // A is the body. Its rate is minus that of the lab B, converted from the axes of B to those
-        // of A.
-        if (is_from_lab && attitude.rate_body_rad_s) {
-          attitude.rate_body_rad_s = -(q * *attitude.rate_body_rad_s);
-        }
-        all.push_back(attitude);
+    const std::vector<Segment::Sample> samples = segment.attitudes(path);
+    for (size_t i = 0; i < samples.size(); ++i) {
+      const Epoch epoch = *parse_epoch(segment.rows[i].epoch);
+      if (!begin) begin = epoch;
+      const Quat& q = samples[i].a_from_b;
+      AemAttitude attitude{epoch.seconds_since(*begin), is_from_lab ? Quat(q.conjugate()) : q,
+                           samples[i].rate_rad_s, segment.rows[i].line};
+      // A is the body. Its rate is minus that of the lab B, converted from the axes of B to those
+      // of A.
+      if (is_from_lab && attitude.rate_body_rad_s) {
+        attitude.rate_body_rad_s = -(q * *attitude.rate_body_rad_s);
       }
-    } catch (const InputError& error) {
-      throw InputError({path.string()}, error.what(), "", "");
+      all.push_back(attitude);
     }
   }
   return all;
@@ -289,13 +245,12 @@ KvnItem to_kvn(const AttitudeEphemeris& aem) {
 }
 
 void write_aem(const std::filesystem::path& path, const AttitudeEphemeris& aem) {
-  write_kvn(path, to_kvn(aem));
+  write_file_whole(path, kvn_text(to_kvn(aem)));
 }
 
 AttitudeEphemeris make_aem(const std::vector<PlatformState>& states, const std::string& epoch,
                            const std::string& object_name, const std::string& creation_date) {
-  const std::optional<Epoch> zero = parse_epoch(epoch);
-  if (!zero) throw wrong("epoch", epoch, "a time as 2000-01-01T12:00:00");
+  const Epoch zero = epoch_of(epoch, {});
   AttitudeEphemeris aem;
   aem.creation_date = creation_date;
   aem.originator = "PHOTORQUE";
@@ -309,7 +264,7 @@ AttitudeEphemeris make_aem(const std::vector<PlatformState>& states, const std::
   segment.comments = {"LAB: x east, y north, z up; the quaternion rotates body vectors into it"};
   for (const PlatformState& state : states) {
     const Quat& q = state.lab_from_body;
-    segment.rows.push_back({epoch_text(zero->after(state.time_s)), {q.x(), q.y(), q.z(), q.w()}});
+    segment.rows.push_back({epoch_text(zero.after(state.time_s)), {q.x(), q.y(), q.z(), q.w()}});
   }
   if (!segment.rows.empty()) {
     segment.start_time = segment.rows.front().epoch;

@@ -48,18 +48,15 @@ struct AttitudeEphemeris {
       // Rate of B with respect to A, in axes of B; only with ANGVEL.
       std::optional<Vec3> rate_rad_s = {};
     };
-    // The rows as attitudes. InputError for an unknown type, an epoch that is no calendar time, or
-    // a quaternion whose norm differs from one by more than 1 %.
-    std::vector<Sample> attitudes() const;
+    // The rows as attitudes. InputError, with the name of the file, for an unknown type, an epoch
+    // that is no calendar time, or a quaternion whose norm differs from one by more than 1 %.
+    std::vector<Sample> attitudes(const std::filesystem::path& file = {}) const;
   };
   std::string version = "1.0";
   std::string creation_date, originator;
   std::vector<std::string> comments;
   std::vector<Segment> segments;
 };
-
-// Whether a frame is that of the body or of a part of it.
-bool is_body_frame(const std::string& frame);
 
 // The attitude of the body of a message as a function of the time since its first row.
 struct AemAttitude {
@@ -71,8 +68,6 @@ struct AemAttitude {
 // The rows of all segments in their order. InputError as read_aem() and Segment::attitudes(), and
 // for segments of several objects.
 std::vector<AemAttitude> aem_attitudes(const std::filesystem::path& path);
-std::vector<AemAttitude> aem_attitudes(const AttitudeEphemeris& aem,
-                                       const std::filesystem::path& path);
 
 // InputError for a file that is no AEM, lacks a required keyword, or has a row of the wrong length.
 AttitudeEphemeris read_aem(const std::filesystem::path& path);

@@ -1,31 +1,30 @@
 #include "attitude/recordings/apm.h"
 
 #include <array>
-#include <initializer_list>
+#include <cmath>
 #include <string>
 
-#include "attitude/recordings/aem.h"
 #include "attitude/recordings/kvn.h"
 #include "attitude/recordings/oem.h"
 #include "core/constants.h"
-#include "core/errors.h"
 #include "core/text/parse.h"
 
 namespace photorque {
 namespace {
 
-class ApmReader {
+using Names = std::initializer_list<std::string_view>;
+
+class ApmReader : MessageFile {
  public:
-  explicit ApmReader(const std::filesystem::path& path)
-      : path_(path), message_(read_message(path)) {}
+  using MessageFile::MessageFile;
 
   AttitudeParameters read() const {
-    required(message_, {"CCSDS_APM_VERS"});
+    required(message, {"CCSDS_APM_VERS"});
     const KvnItem* quaternion = block("QUAT", "Q1");
     const KvnItem* euler = block("EULER", "EULER_ROT_SEQ");
     const KvnItem* source = quaternion != nullptr ? quaternion : euler;
     if (source == nullptr) {
-      throw error(message_, "",
+      throw error(message, "",
                   block("SPIN", "SPIN_ALPHA") != nullptr ? "spin parameters alone" : "no attitude",
                   "a quaternion (QUAT_START) or Euler angles (EULER_START)");
     }
@@ -38,62 +37,40 @@ class ApmReader {
   }
 
  private:
-  InputError error(const KvnItem& at, const std::string& key, const std::string& found,
-                   const std::string& expected) const {
-    return {{path_.string(), at.line}, key, found, expected};
-  }
-
   // A block of that name. In version 1 the message itself, if it has the keyword.
   const KvnItem* block(const char* name, const char* keyword) const {
-    for (const KvnItem& item : message_.items) {
+    for (const KvnItem& item : message.items) {
       if (item.kind == KvnItem::Kind::block && item.key == name) return &item;
     }
-    return message_.find(keyword) != nullptr ? &message_ : nullptr;
-  }
-
-  // The first assignment of one of these names.
-  static const KvnItem* find(const KvnItem& in, std::initializer_list<const char*> names) {
-    for (const char* name : names) {
-      for (const KvnItem& item : in.items) {
-        if (item.kind == KvnItem::Kind::assignment && item.key == name) return &item;
-      }
-    }
-    return nullptr;
-  }
-  const KvnItem& required(const KvnItem& in, std::initializer_list<const char*> names) const {
-    const KvnItem* item = find(in, names);
-    if (item == nullptr) throw error(in, *names.begin(), "nothing", "a value");
-    return *item;
+    return message.find({keyword}) != nullptr ? &message : nullptr;
   }
 
   double number(const KvnItem& item, const char* unit) const {
     if (!item.unit.empty() && item.unit != unit) {
       throw error(item, item.key, "[" + item.unit + "]", std::string("[") + unit + "]");
     }
-    return require_number(item.value, {path_.string(), item.line}, item.key);
+    return require_number(item.value, {path.string(), item.line}, item.key);
+  }
+  double number(const KvnItem& in, const std::string& name, const char* unit) const {
+    return number(required(in, {name}), unit);
+  }
+  Vec3 vector(const KvnItem& in, const std::array<const char*, 3>& names, const char* unit) const {
+    return {number(in, names[0], unit), number(in, names[1], unit), number(in, names[2], unit)};
   }
 
   Epoch read_epoch(const KvnItem& source) const {
-    const KvnItem* item = find(message_, {"EPOCH"});
-    if (item == nullptr) item = &required(source, {"EPOCH"});
-    const std::optional<Epoch> epoch = parse_epoch(item->value);
-    if (!epoch) {
-      throw error(*item, "EPOCH", in_quotes(item->value), "a time as 2000-01-01T12:00:00");
-    }
-    const KvnItem& system = required(message_, {"TIME_SYSTEM"});
-    const std::optional<Epoch> utc = to_utc(*epoch, system.value);
-    if (!utc) {
-      throw error(system, "TIME_SYSTEM", in_quotes(system.value), "UTC, UT1, TAI, TT or GPS");
-    }
-    return *utc;
+    const KvnItem* of_message = message.find({"EPOCH"});
+    const KvnItem& item = of_message != nullptr ? *of_message : required(source, {"EPOCH"});
+    const Epoch time = epoch(item.value, "EPOCH", item);
+    const KvnItem& system = required(message, {"TIME_SYSTEM"});
+    return utc(time, system.value, system);
   }
 
   struct Frames {
     bool is_from_body;  // A is the body and B the lab
     std::string lab;
   };
-  Frames frames(const KvnItem& in, std::initializer_list<const char*> names_a,
-                std::initializer_list<const char*> names_b) const {
+  Frames frames(const KvnItem& in, Names names_a, Names names_b) const {
     const KvnItem &a = required(in, names_a), &b = required(in, names_b);
     if (is_body_frame(a.value) == is_body_frame(b.value)) {
       throw error(a, a.key, in_quotes(a.value) + " and " + in_quotes(b.value),
@@ -114,8 +91,8 @@ class ApmReader {
   static Quat lab_from_body(const Quat& a_from_b, const Frames& between) {
     return between.is_from_body ? a_from_b.conjugate() : a_from_b;
   }
-  bool is_backwards(const KvnItem& in, std::initializer_list<const char*> names) const {
-    const KvnItem* direction = find(in, names);
+  bool is_backwards(const KvnItem& in, std::string_view name) const {
+    const KvnItem* direction = in.find({name});
     if (direction == nullptr || direction->value == "A2B") return false;
     if (direction->value == "B2A") return true;
     throw error(*direction, direction->key, in_quotes(direction->value), "A2B or B2A");
@@ -130,22 +107,20 @@ class ApmReader {
 
   Quat of_quaternion(const KvnItem& in) const {
     const Frames between = quaternion_frames(in);
-    Quat q(number(required(in, {"QC"}), ""), number(required(in, {"Q1"}), ""),
-           number(required(in, {"Q2"}), ""), number(required(in, {"Q3"}), ""));
+    Quat q(number(in, "QC", ""), number(in, "Q1", ""), number(in, "Q2", ""), number(in, "Q3", ""));
     constexpr double tolerance = 0.01;
     if (!(std::abs(q.norm() - 1.0) < tolerance)) {
       throw error(required(in, {"Q1"}), "Q1 … QC", "a quaternion of norm " + shortest(q.norm()),
                   "unit norm");
     }
     q.normalize();
-    return lab_from_body(is_backwards(in, {"Q_DIR"}) ? q.conjugate() : q, between);
+    return lab_from_body(is_backwards(in, "Q_DIR") ? q.conjugate() : q, between);
   }
 
   // Axes of the successive rotations, each in the frame that the previous rotations rotated.
   struct Euler {
     std::array<Vec3, 3> axes;
     std::array<double, 3> angles_rad;
-    bool is_version_1 = false;
     Quat rotation(size_t first) const {
       Quat q = Quat::Identity();
       for (size_t i = first; i < 3; ++i) q = q * Quat(Eigen::AngleAxisd(angles_rad[i], axes[i]));
@@ -155,29 +130,23 @@ class ApmReader {
   Euler read_angles(const KvnItem& in) const {
     const KvnItem& sequence = required(in, {"EULER_ROT_SEQ"});
     Euler euler;
-    euler.is_version_1 = find(in, {"ANGLE_1"}) == nullptr;
-    const std::string& word = sequence.value;
-    bool is_right = word.size() == 3;
-    std::array<int, 3> places{};
-    for (size_t i = 0; is_right && i < 3; ++i) {
-      const bool is_digit = word[i] >= '1' && word[i] <= '3';
-      places[i] = is_digit ? word[i] - '1' : word[i] - 'X';
-      is_right = places[i] >= 0 && places[i] < 3 && (i == 0 || places[i] != places[i - 1]);
-      if (is_right) euler.axes[i] = Vec3::Unit(places[i]);
-    }
-    if (!is_right) {
-      throw error(sequence, "EULER_ROT_SEQ", in_quotes(word), "three axes, as 321 or ZYX");
+    const bool is_version_1 = in.find({"ANGLE_1"}) == nullptr;
+    const auto places = axes_of_sequence(sequence.value);
+    if (!places || (*places)[0] == (*places)[1] || (*places)[1] == (*places)[2]) {
+      throw error(sequence, "EULER_ROT_SEQ", in_quotes(sequence.value),
+                  "three axes, as 321 or ZYX");
     }
     constexpr std::array<const char*, 3> of_version_2 = {"ANGLE_1", "ANGLE_2", "ANGLE_3"};
     constexpr std::array<const char*, 3> of_version_1 = {"X_ANGLE", "Y_ANGLE", "Z_ANGLE"};
     for (size_t i = 0; i < 3; ++i) {
+      euler.axes[i] = Vec3::Unit((*places)[i]);
       const KvnItem* angle = nullptr;
-      if (!euler.is_version_1) {
+      if (!is_version_1) {
         angle = &required(in, {of_version_2[i]});
       } else {
         // If an axis occurs twice, its second angle is further down.
-        const char* name = of_version_1[static_cast<size_t>(places[i])];
-        int skip = i == 2 && places[2] == places[0] ? 1 : 0;
+        const char* name = of_version_1[static_cast<size_t>((*places)[i])];
+        int skip = i == 2 && (*places)[2] == (*places)[0] ? 1 : 0;
         for (const KvnItem& item : in.items) {
           if (item.key == name && skip-- == 0) angle = &item;
         }
@@ -191,7 +160,7 @@ class ApmReader {
   Quat of_angles(const KvnItem& in) const {
     const Frames between = euler_frames(in);
     const Quat q = read_angles(in).rotation(0);
-    return lab_from_body(is_backwards(in, {"EULER_DIR"}) ? q.conjugate() : q, between);
+    return lab_from_body(is_backwards(in, "EULER_DIR") ? q.conjugate() : q, between);
   }
 
   std::optional<Vec3> rate(const Quat& lab_from_body_now, const KvnItem* quaternion,
@@ -199,9 +168,8 @@ class ApmReader {
     if (const KvnItem* angular = block("ANGVEL", "ANGVEL_X")) {
       const Frames between = frames(*angular, {"REF_FRAME_A"}, {"REF_FRAME_B"});
       const KvnItem& axes = required(*angular, {"ANGVEL_FRAME"});
-      Vec3 rate_rad_s = degree_rad * Vec3(number(required(*angular, {"ANGVEL_X"}), "deg/s"),
-                                          number(required(*angular, {"ANGVEL_Y"}), "deg/s"),
-                                          number(required(*angular, {"ANGVEL_Z"}), "deg/s"));
+      Vec3 rate_rad_s =
+          degree_rad * vector(*angular, {"ANGVEL_X", "ANGVEL_Y", "ANGVEL_Z"}, "deg/s");
       if (!is_body_frame(axes.value)) {
         if (axes.value != between.lab) {
           throw error(axes, "ANGVEL_FRAME", in_quotes(axes.value), "one of the two frames");
@@ -211,13 +179,11 @@ class ApmReader {
       // The rate of B with respect to A.
       return between.is_from_body ? Vec3(-rate_rad_s) : rate_rad_s;
     }
-    if (quaternion != nullptr && find(*quaternion, {"Q1_DOT"}) != nullptr) {
-      const auto dot = [&](const char* name) {
-        return number(required(*quaternion, {name}), "1/s");
-      };
-      Quat slope(dot("QC_DOT"), dot("Q1_DOT"), dot("Q2_DOT"), dot("Q3_DOT"));
+    if (quaternion != nullptr && quaternion->find({"Q1_DOT"}) != nullptr) {
+      const Vec3 dot = vector(*quaternion, {"Q1_DOT", "Q2_DOT", "Q3_DOT"}, "1/s");
+      Quat slope(number(*quaternion, "QC_DOT", "1/s"), dot.x(), dot.y(), dot.z());
       const bool is_inverse =
-          quaternion_frames(*quaternion).is_from_body != is_backwards(*quaternion, {"Q_DIR"});
+          quaternion_frames(*quaternion).is_from_body != is_backwards(*quaternion, "Q_DIR");
       if (is_inverse) slope = slope.conjugate();
       return 2.0 * (lab_from_body_now.conjugate() * slope).vec();
     }
@@ -225,25 +191,22 @@ class ApmReader {
   }
 
   std::optional<Vec3> rate_of_angles(const KvnItem& in) const {
-    const KvnItem* old = find(in, {"X_RATE", "Y_RATE", "Z_RATE"});
-    if (old != nullptr) {
+    if (const KvnItem* old = in.find({"X_RATE", "Y_RATE", "Z_RATE"})) {
       throw error(*old, old->key, "rates of Euler angles in version 1, whose frame is not stated",
                   "an APM of version 2, or no rates and propagate.initial_rate_rad_s");
     }
-    if (find(in, {"ANGLE_1_DOT"}) == nullptr) return std::nullopt;
+    if (in.find({"ANGLE_1_DOT"}) == nullptr) return std::nullopt;
     const Euler euler = read_angles(in);
-    constexpr std::array<const char*, 3> names = {"ANGLE_1_DOT", "ANGLE_2_DOT", "ANGLE_3_DOT"};
+    const Vec3 slopes_rad_s =
+        degree_rad * vector(in, {"ANGLE_1_DOT", "ANGLE_2_DOT", "ANGLE_3_DOT"}, "deg/s");
     Vec3 of_b_rad_s = Vec3::Zero();  // with respect to A, in B's axes
     for (size_t i = 0; i < 3; ++i) {
-      of_b_rad_s += degree_rad * number(required(in, {names[i]}), "deg/s") *
+      of_b_rad_s += slopes_rad_s[static_cast<Eigen::Index>(i)] *
                     (euler.rotation(i + 1).conjugate() * euler.axes[i]);
     }
     if (!euler_frames(in).is_from_body) return of_b_rad_s;
     return -(euler.rotation(0) * of_b_rad_s);
   }
-
-  std::filesystem::path path_;
-  KvnItem message_;
 };
 
 }  // namespace

@@ -11,13 +11,6 @@ namespace {
 // Ratio of standard deviation and median absolute deviation of a Gaussian.
 constexpr double sigma_per_mad = 1.4826;
 
-Channel* find_channel(Recording& recording, std::string_view name) {
-  for (Channel& channel : recording.channels) {
-    if (channel.name == name) return &channel;
-  }
-  return nullptr;
-}
-
 // The median (the upper one of an even number); reorders the values. 0 if there are none.
 template <class Iterator>
 double middle_of(Iterator first, Iterator last) {
@@ -27,19 +20,9 @@ double middle_of(Iterator first, Iterator last) {
   return *middle;
 }
 
-// Standard deviation of white noise from third differences. Their variance is 20 times that of the
-// noise, and smooth motion hardly contributes.
-double noise_level(const std::vector<double>& x) {
-  std::vector<double> size;
-  for (size_t i = 3; i < x.size(); ++i) {
-    const double d = x[i] - 3 * x[i - 1] + 3 * x[i - 2] - x[i - 3];
-    if (std::isfinite(d)) size.push_back(std::abs(d));
-  }
-  return sigma_per_mad * middle_of(size.begin(), size.end()) / std::sqrt(20.0);
-}
-
 // Deviation of a value from the parabola through the three values before it (direction −1) or after
-// it (+1). A spike deviates equally from both, a step from only one. NaN near gaps and ends.
+// it (+1): a third difference. A spike deviates equally from both, a step from only one. NaN near
+// gaps and ends.
 double off_parabola(const std::vector<double>& x, size_t i, int direction) {
   const auto at = [&](int steps) {
     const auto j = static_cast<std::ptrdiff_t>(i) + direction * steps;
@@ -47,6 +30,17 @@ double off_parabola(const std::vector<double>& x, size_t i, int direction) {
                                                                : x[static_cast<size_t>(j)];
   };
   return at(0) - 3 * at(1) + 3 * at(2) - at(3);
+}
+
+// Standard deviation of white noise from third differences. Their variance is 20 times that of the
+// noise, and smooth motion hardly contributes.
+double noise_level(const std::vector<double>& x) {
+  std::vector<double> size;
+  for (size_t i = 3; i < x.size(); ++i) {
+    const double d = off_parabola(x, i, -1);
+    if (std::isfinite(d)) size.push_back(std::abs(d));
+  }
+  return sigma_per_mad * middle_of(size.begin(), size.end()) / std::sqrt(20.0);
 }
 
 // Whether a value is a spike in smooth motion of any rate.
@@ -129,7 +123,7 @@ struct Stuck {
     }
     noise = noise_level(free);
     for (size_t i = 3; i < x.size(); ++i) {
-      const double d = free[i] - 3 * free[i - 1] + 3 * free[i - 2] - free[i - 3];
+      const double d = off_parabola(free, i, -1);
       if (d * before < 0.0) ++turns;
       if (std::isfinite(d * before)) ++differences;
       before = d;
@@ -159,20 +153,21 @@ std::vector<size_t> stuck_rows(const std::vector<double>& x, const Stuck& found)
   return rows;
 }
 
-std::array<Channel*, 4> quaternion_channels(Recording& recording) {
-  return {find_channel(recording, "q_w"), find_channel(recording, "q_x"),
-          find_channel(recording, "q_y"), find_channel(recording, "q_z")};
-}
-
-bool complete(const std::array<Channel*, 4>& q) {
-  return std::find(q.begin(), q.end(), nullptr) == q.end();
+// The components w, x, y, z of the attitude; empty unless there are all four.
+std::vector<Channel*> quaternion_channels(Recording& recording) {
+  std::vector<Channel*> q;
+  for (const char* name : {"q_w", "q_x", "q_y", "q_z"}) {
+    q.push_back(recording.find(name));
+    if (q.back() == nullptr) return {};
+  }
+  return q;
 }
 
 }  // namespace
 
 void repair_quaternions(Recording& recording) {
-  const std::array<Channel*, 4> q = quaternion_channels(recording);
-  if (!complete(q)) return;
+  const std::vector<Channel*> q = quaternion_channels(recording);
+  if (q.empty()) return;
   std::array<double, 4> before{};
   for (size_t i = 0; i < recording.rows(); ++i) {
     std::array<double, 4> now{};
@@ -211,12 +206,11 @@ void remove_outliers(Recording& recording) {
   };
   std::vector<Channel*> gyro;
   for (const char* name : {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"}) {
-    if (Channel* channel = find_channel(recording, name)) gyro.push_back(channel);
+    if (Channel* channel = recording.find(name)) gyro.push_back(channel);
   }
   std::vector<Stuck> stuck;
   for (const Channel* channel : gyro) stuck.emplace_back(channel->values);
-  const bool has_noise =
-      std::any_of(stuck.begin(), stuck.end(), [](const Stuck& s) { return s.has_fine_noise(); });
+  const bool has_noise = std::ranges::any_of(stuck, &Stuck::has_fine_noise);
   for (size_t k = 0; k < gyro.size(); ++k) {
     const std::vector<double>& x = gyro[k]->values;
     // An axis that the instrument does not have is zero in all rows.
@@ -228,16 +222,16 @@ void remove_outliers(Recording& recording) {
     for (const size_t row : outlying_rows(channel->values)) empty(*channel, row);
   }
   // The components of a quaternion are emptied together.
-  const std::array<Channel*, 4> q = quaternion_channels(recording);
-  if (!complete(q)) return;
+  const std::vector<Channel*> q = quaternion_channels(recording);
+  if (q.empty()) return;
   std::vector<size_t> rows;
-  for (const Channel* channel : q) {
-    if (const Stuck held(channel->values); held.has_fine_noise()) {
-      const std::vector<size_t> found = stuck_rows(channel->values, held);
-      rows.insert(rows.end(), found.begin(), found.end());
-    }
-    const std::vector<size_t> found = outlying_rows(channel->values);
+  const auto append = [&rows](const std::vector<size_t>& found) {
     rows.insert(rows.end(), found.begin(), found.end());
+  };
+  for (const Channel* channel : q) {
+    const Stuck held(channel->values);
+    if (held.has_fine_noise()) append(stuck_rows(channel->values, held));
+    append(outlying_rows(channel->values));
   }
   for (const size_t row : rows) {
     for (Channel* channel : q) empty(*channel, row);

@@ -97,20 +97,12 @@ constexpr std::array<ChannelTraits, channel_count> all_traits = {{
 }};
 
 double of_attitude(Scalar scalar, const Quat& q) {
-  switch (scalar) {
-    case Scalar::tilt:
-      // sin(tilt/2)² = x² + y²: accurate near zero, where the cosine of the tilt is not.
-      return 2.0 * std::atan2(std::hypot(q.x(), q.y()), std::hypot(q.w(), q.z()));
-    case Scalar::roll:
-      return angles_of_attitude("zyx", q)[0];
-    case Scalar::pitch:
-      return angles_of_attitude("zyx", q)[1];
-    case Scalar::yaw:
-      return angles_of_attitude("zyx", q)[2];
-    default:
-      break;
+  if (scalar < Scalar::tilt || scalar > Scalar::yaw) return 0.0;
+  // sin(tilt/2)² = x² + y²: accurate near zero, where the cosine of the tilt is not.
+  if (scalar == Scalar::tilt) {
+    return 2.0 * std::atan2(std::hypot(q.x(), q.y()), std::hypot(q.w(), q.z()));
   }
-  return 0.0;
+  return angles_of_attitude("zyx", q)[static_cast<int>(scalar) - static_cast<int>(Scalar::roll)];
 }
 
 }  // namespace
@@ -150,12 +142,6 @@ constexpr const char* gyro_names[] = {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_ra
 constexpr const char* euler_names[] = {"roll_rad", "pitch_rad", "yaw_rad"};
 constexpr const char* angle_names[] = {"angle_rad", "roll_rad", "pitch_rad", "yaw_rad"};
 constexpr const char* event_names[] = {"thruster", "impulse", "event"};
-// Channels that Recording::schedule() uses.
-constexpr const char* schedule_names[] = {
-    "command_x_N_m", "command_y_N_m",    "command_z_N_m",     "command_x_N",
-    "command_y_N",   "command_body_x_N", "command_body_y_N",  "wheel_x_rad_s",
-    "wheel_y_rad_s", "wheel_z_rad_s",    "battery_current_A", "led_current_A"};
-
 // Index of the axis: 0, 1 or 2 for x, y or z.
 size_t index_of(const Vec3& axis) {
   Eigen::Index k = 0;
@@ -166,10 +152,6 @@ size_t index_of(const Vec3& axis) {
 double cell(const Channel* channel, size_t row) {
   return channel == nullptr ? empty_cell : channel->values[row];
 }
-
-}  // namespace
-
-namespace {
 
 // The names of the columns as text, with a hint if one of them lacks only its unit.
 std::string columns_in_words(const Recording& recording) {
@@ -204,7 +186,7 @@ const Channel* MotionColumns::take(const std::string& name) {
 MotionColumns::MotionColumns(const Recording& recording, const Platform& platform,
                              const std::string& name)
     : recording_(recording), platform_(platform) {
-  for (const char* known : schedule_names) take(known);
+  for (const char* known : schedule_channels) take(known);
   for (const char* known : event_names) {
     if (event_ == nullptr) event_ = take(known);
   }
@@ -213,11 +195,8 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
     // For a platform with one axis, the other two axes do not measure the motion.
     if (!one_axis || k == index_of(platform.axis)) gyro_[k] = take(gyro_names[k]);
   }
-  const bool any_q = std::any_of(std::begin(quaternion_names), std::end(quaternion_names),
-                                 [&](const char* q) { return recording.find(q) != nullptr; });
-  const bool all_euler = std::all_of(std::begin(euler_names), std::end(euler_names),
-                                     [&](const char* e) { return recording.find(e) != nullptr; });
-  if (any_q) {
+  const auto has = [&](const char* channel) { return recording.find(channel) != nullptr; };
+  if (std::ranges::any_of(quaternion_names, has)) {
     for (size_t k = 0; k < 4; ++k) {
       q_[k] = take(quaternion_names[k]);
       if (q_[k] == nullptr) {
@@ -226,34 +205,35 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
       }
     }
     sees_axis_ = {true, true, true};
-  } else if (platform.turns_about_one_axis()) {
+  } else if (one_axis) {
     const size_t axis = index_of(platform.axis);
     if (gyro_[axis] == nullptr) gyro_[axis] = take("rate_rad_s");
     for (const char* known : angle_names) {
       if (angle_ == nullptr) angle_ = take(known);
     }
     if (angle_ != nullptr) sees_axis_[axis] = true;
-  } else if (all_euler) {
+  } else if (std::ranges::all_of(euler_names, has)) {
     for (size_t k = 0; k < 3; ++k) euler_[k] = take(euler_names[k]);
     sees_axis_ = {true, true, true};
   }
-  if (!platform.turns_about_one_axis()) take_scalars();
+  if (!one_axis) take_scalars();
   if (platform.slides()) {
-    take_places();
+    for (int s = first_place; s < scalar_count; ++s) {
+      scalars_[static_cast<size_t>(s)] = take(channel_traits(vector_channels + s).column);
+    }
     if (has_scalars()) return;
     throw InputError({name, 0}, "header", "no channel of a position or a velocity",
                      "x_m, y_m, velocity_x_m_s or velocity_y_m_s, or a table [recording.columns] "
                      "that names one");
   }
   if (has_attitude() || has_gyro() || has_scalars()) return;
-  throw InputError({name, 0}, "header",
-                   "neither an angle nor a rate (" + columns_in_words(recording) + ")",
-                   platform.turns_about_one_axis()
-                       ? "angle_rad, rate_rad_s, a gyro axis, or a table [recording.columns] that "
-                         "names one (photorque diagnose --guess writes it)"
-                       : "q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; gyro_x_rad_s …; "
-                         "tilt_rad, rate_magnitude_rad_s; or [recording.columns], which photorque "
-                         "diagnose --guess writes");
+  throw InputError(
+      {name, 0}, "header", "neither an angle nor a rate (" + columns_in_words(recording) + ")",
+      one_axis ? "angle_rad, rate_rad_s, a gyro axis, or a table [recording.columns] that "
+                 "names one (photorque diagnose --guess writes it)"
+               : "q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; gyro_x_rad_s …; "
+                 "tilt_rad, rate_magnitude_rad_s; or [recording.columns], which photorque "
+                 "diagnose --guess writes");
 }
 
 // Takes scalars. Those that a complete attitude or three rates already contain are left out.
@@ -266,8 +246,7 @@ void MotionColumns::take_scalars() {
     put(Scalar::rate_magnitude, "rate_magnitude_rad_s");
     const Channel* rate = recording_.find("rate_rad_s");
     const bool is_magnitude =
-        rate != nullptr &&
-        std::none_of(rate->values.begin(), rate->values.end(), [](double x) { return x < 0.0; });
+        rate != nullptr && std::ranges::none_of(rate->values, [](double x) { return x < 0.0; });
     if (is_magnitude) put(Scalar::rate_magnitude, "rate_rad_s");
   }
   for (int s = first_field; s < first_place; ++s) {
@@ -279,15 +258,8 @@ void MotionColumns::take_scalars() {
   }
 }
 
-void MotionColumns::take_places() {
-  for (int s = first_place; s < scalar_count; ++s) {
-    scalars_[static_cast<size_t>(s)] = take(channel_traits(vector_channels + s).column);
-  }
-}
-
 bool MotionColumns::has_scalars() const {
-  return std::any_of(scalars_.begin(), scalars_.end(),
-                     [](const Channel* channel) { return channel != nullptr; });
+  return std::ranges::any_of(scalars_, [](const Channel* channel) { return channel != nullptr; });
 }
 
 std::string MotionColumns::first_name() const {
@@ -332,9 +304,7 @@ bool MotionColumns::has_event(size_t row) const {
 std::vector<std::string> MotionColumns::unused() const {
   std::vector<std::string> names;
   for (const Channel& channel : recording_.channels) {
-    if (std::find(used_.begin(), used_.end(), &channel) == used_.end()) {
-      names.push_back(channel.name);
-    }
+    if (std::ranges::find(used_, &channel) == used_.end()) names.push_back(channel.name);
   }
   return names;
 }

@@ -135,7 +135,6 @@ class MotionColumns {
  private:
   const Channel* take(const std::string& name);
   void take_scalars();
-  void take_places();
   const Channel* scalar_at(Scalar scalar) const { return scalars_[static_cast<size_t>(scalar)]; }
 
   const Recording& recording_;

@@ -115,9 +115,11 @@ void append(std::string& text, const KvnItem& block) {
 
 }  // namespace
 
-const std::string* KvnItem::find(std::string_view name) const {
-  for (const KvnItem& item : items) {
-    if (item.kind == Kind::assignment && item.key == name) return &item.value;
+const KvnItem* KvnItem::find(std::initializer_list<std::string_view> names) const {
+  for (const std::string_view name : names) {
+    for (const KvnItem& item : items) {
+      if (item.kind == Kind::assignment && item.key == name) return &item;
+    }
   }
   return nullptr;
 }
@@ -135,27 +137,10 @@ KvnItem kvn_block(const std::string& name) {
   return {KvnItem::Kind::block, name, "", "", {}, 0};
 }
 
-KvnItem read_kvn(const std::filesystem::path& path) {
-  return Parser(path).read();
-}
-
 std::string kvn_text(const KvnItem& message) {
   std::string text;
   append(text, message);
   return text;
-}
-
-void write_kvn(const std::filesystem::path& path, const KvnItem& message) {
-  write_file_whole(path, kvn_text(message));
-}
-
-std::vector<double> kvn_numbers(const std::vector<std::string_view>& words, size_t first,
-                                const std::filesystem::path& path, int line) {
-  std::vector<double> numbers;
-  for (size_t i = first; i < words.size(); ++i) {
-    numbers.push_back(require_number(words[i], {path.string(), line}, ""));
-  }
-  return numbers;
 }
 
 namespace {
@@ -180,7 +165,7 @@ std::string first_words(const std::filesystem::path& path) {
 }  // namespace
 
 KvnItem read_message(const std::filesystem::path& path) {
-  return first_words(path).starts_with("<") ? read_ndm_xml(path) : read_kvn(path);
+  return first_words(path).starts_with("<") ? read_ndm_xml(path) : Parser(path).read();
 }
 
 bool is_message(const std::filesystem::path& path, const std::string& kind) {
@@ -192,6 +177,61 @@ bool is_message(const std::filesystem::path& path, const std::string& kind) {
   } catch (const InputError&) {
     return false;
   }
+}
+
+MessageFile::MessageFile(const std::filesystem::path& file)
+    : path(file), message(read_message(file)) {}
+
+InputError MessageFile::error(const KvnItem& at, const std::string& key, const std::string& found,
+                              const std::string& expected) const {
+  return {{path.string(), at.line}, key, found, expected};
+}
+
+const KvnItem& MessageFile::required(const KvnItem& block,
+                                     std::initializer_list<std::string_view> names) const {
+  if (const KvnItem* item = block.find(names)) return *item;
+  throw error(block, std::string(*names.begin()), "nothing", "a value");
+}
+
+MessageFile::Row MessageFile::row(const KvnItem& item) const {
+  if (item.kind != KvnItem::Kind::data) {
+    throw error(item, "", in_quotes(item.key), "rows of an epoch and numbers");
+  }
+  const std::vector<std::string_view> words = words_of(item.value);
+  if (words.empty()) throw error(item, "", "an empty row", "an epoch and numbers");
+  Row row{std::string(words.front()), {}};
+  for (size_t i = 1; i < words.size(); ++i) {
+    row.numbers.push_back(require_number(words[i], {path.string(), item.line}, ""));
+  }
+  return row;
+}
+
+Epoch MessageFile::epoch(const std::string& text, const std::string& key, const KvnItem& at) const {
+  const std::optional<Epoch> time = parse_epoch(text);
+  if (!time) throw error(at, key, in_quotes(text), "a time as 2000-01-01T12:00:00");
+  return *time;
+}
+
+Epoch MessageFile::utc(const Epoch& time, const std::string& system, const KvnItem& at) const {
+  const std::optional<Epoch> utc = to_utc(time, system);
+  if (!utc) throw error(at, "TIME_SYSTEM", in_quotes(system), "UTC, UT1, TAI, TT or GPS");
+  return *utc;
+}
+
+bool is_body_frame(std::string_view frame) {
+  return frame.starts_with("SC_BODY") || frame.starts_with("ACTUATOR") ||
+         frame.starts_with("INSTRUMENT") || frame.starts_with("SENSOR");
+}
+
+std::optional<std::array<int, 3>> axes_of_sequence(std::string_view sequence) {
+  std::array<int, 3> axes{};
+  if (sequence.size() != axes.size()) return std::nullopt;
+  for (size_t i = 0; i < axes.size(); ++i) {
+    const char c = sequence[i];
+    axes[i] = c >= 'X' && c <= 'Z' ? c - 'X' : c - '1';
+    if (axes[i] < 0 || axes[i] > 2) return std::nullopt;
+  }
+  return axes;
 }
 
 }  // namespace photorque

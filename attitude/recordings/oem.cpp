@@ -8,7 +8,6 @@
 #include "attitude/environment/environment.h"
 #include "attitude/recordings/kvn.h"
 #include "core/constants.h"
-#include "core/errors.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -74,49 +73,29 @@ std::array<Vec3, 2> OrbitEphemeris::at(double time_s) const {
   return (after == pieces_.begin() ? *after : *(after - 1)).at(time_s);
 }
 
-struct OrbitEphemeris::Reader {
-  const std::filesystem::path& path;
+struct OrbitEphemeris::Reader : MessageFile {
   OrbitEphemeris& into;
   std::optional<Epoch> first;  // of the file's states, in its time system
   std::string frame, time_system;
 
-  InputError error(int line, const std::string& key, const std::string& found,
-                   const std::string& expected) const {
-    return {{path.string(), line}, key, found, expected};
-  }
-
-  const std::string& required(const KvnItem& block, const char* name) const {
-    const std::string* value = block.find(name);
-    if (value == nullptr) throw error(block.line, name, "nothing", "a value");
-    return *value;
-  }
-
-  Epoch epoch(const std::string& text, const char* key, int line) const {
-    const std::optional<Epoch> time = parse_epoch(text);
-    if (!time) throw error(line, key, in_quotes(text), "a time as 2000-01-01T12:00:00");
-    return *time;
-  }
-
   // Checks that all segments have equal frames, time systems and objects.
   void read_frame(const KvnItem& meta) {
-    const std::string centre = required(meta, "CENTER_NAME");
+    const std::string centre = required(meta, {"CENTER_NAME"}).value;
     if (upper(centre) != "EARTH") {
-      throw error(meta.line, "CENTER_NAME", in_quotes(centre), "EARTH: orbits about the Earth");
+      throw error(meta, "CENTER_NAME", in_quotes(centre), "EARTH: orbits about the Earth");
     }
-    const std::string here = upper(required(meta, "REF_FRAME"));
+    const std::string here = upper(required(meta, {"REF_FRAME"}).value);
     if (axes_of_frame(here) == FrameAxes::unknown) {
-      throw error(meta.line, "REF_FRAME", in_quotes(here),
+      throw error(meta, "REF_FRAME", in_quotes(here),
                   "EME2000, J2000, GCRF, ICRF, TOD, MOD, TEME or ITRF (with or without its year)");
     }
-    const std::string system = upper(required(meta, "TIME_SYSTEM"));
-    if (!to_utc(Epoch{}, system)) {
-      throw error(meta.line, "TIME_SYSTEM", in_quotes(system), "UTC, UT1, TAI, TT or GPS");
-    }
-    const std::string object = required(meta, "OBJECT_NAME");
+    const std::string system = upper(required(meta, {"TIME_SYSTEM"}).value);
+    utc({}, system, meta);
+    const std::string object = required(meta, {"OBJECT_NAME"}).value;
     if (frame.empty()) frame = here, time_system = system, into.object_name_ = object;
     const auto same = [&](const char* key, const std::string& before, const std::string& now) {
       if (before == now) return;
-      throw error(meta.line, key, in_quotes(now) + " after " + in_quotes(before),
+      throw error(meta, key, in_quotes(now) + " after " + in_quotes(before),
                   "segments of one object, frame and time system");
     };
     same("REF_FRAME", frame, here);
@@ -125,17 +104,17 @@ struct OrbitEphemeris::Reader {
   }
 
   Method read_method(const KvnItem& meta) const {
-    const std::string* named = meta.find("INTERPOLATION");
+    const KvnItem* named = meta.find({"INTERPOLATION"});
     Method method;
     if (named == nullptr) return method;
-    const std::string name = upper(*named);
+    const std::string name = upper(named->value);
     if (name != "HERMITE" && name != "LAGRANGE" && name != "LINEAR") {
-      throw error(meta.line, "INTERPOLATION", in_quotes(*named), "HERMITE, LAGRANGE or LINEAR");
+      throw error(meta, "INTERPOLATION", in_quotes(named->value), "HERMITE, LAGRANGE or LINEAR");
     }
     method.uses_velocity = name == "HERMITE";
     size_t degree = 1;
     if (name != "LINEAR") {
-      const double number = require_number(required(meta, "INTERPOLATION_DEGREE"),
+      const double number = require_number(required(meta, {"INTERPOLATION_DEGREE"}).value,
                                            {path.string(), meta.line}, "INTERPOLATION_DEGREE");
       degree = require_count(number, {path.string(), meta.line}, "INTERPOLATION_DEGREE", 1, 15);
     }
@@ -143,23 +122,19 @@ struct OrbitEphemeris::Reader {
     return method;
   }
 
-  State read_state(const KvnItem& row) {
-    if (row.kind != KvnItem::Kind::data) {
-      throw error(row.line, "", in_quotes(row.key), "rows of an epoch and six or nine numbers");
-    }
-    const std::vector<std::string_view> words = words_of(row.value);
-    constexpr size_t plain = 7, with_acceleration = 10;
-    if (words.size() != plain && words.size() != with_acceleration) {
-      throw error(row.line, "", std::to_string(words.size() - 1) + " numbers",
+  State read_state(const KvnItem& item) {
+    const auto [epoch_of_row, v] = row(item);
+    constexpr size_t plain = 6, with_acceleration = 9;
+    if (v.size() != plain && v.size() != with_acceleration) {
+      throw error(item, "", std::to_string(v.size()) + " numbers",
                   "an epoch, position [km] and velocity [km/s], with or without acceleration");
     }
-    const std::vector<double> v = kvn_numbers(words, 1, path, row.line);
-    const Epoch time = epoch(std::string(words.front()), "epoch", row.line);
+    const Epoch time = epoch(epoch_of_row, "epoch", item);
     if (!first) first = time;
     State state{time.seconds_since(*first), km_m * Vec3(v[0], v[1], v[2]),
-                km_m * Vec3(v[3], v[4], v[5]), row.line};
+                km_m * Vec3(v[3], v[4], v[5]), item.line};
     if (!(state.position_m.norm() > reference_radius_of_earth_m)) {
-      throw error(row.line, "", "a distance of " + shortest(state.position_m.norm() / km_m) + " km",
+      throw error(item, "", "a distance of " + shortest(state.position_m.norm() / km_m) + " km",
                   "kilometres from the Earth's centre, above its surface");
     }
     if (axes_of_frame(frame) == FrameAxes::earth) {
@@ -208,11 +183,12 @@ struct OrbitEphemeris::Reader {
     const double error_m =
         (piece_at(states, i, method, other).at(middle_s)[0] - here_m).norm() / here_m.norm();
     if (error_m <= max_uncertainty) return;
-    throw error(states[i + 1].line, "",
-                "a state " + shortest(states[i + 1].time_s - states[i].time_s) +
-                    " s after the one before, too far for the interpolation (it is uncertain by " +
-                    shortest(std::round(1e3 * error_m) / 10.0) + " % of the distance)",
-                "states closer together, or another INTERPOLATION");
+    throw InputError(
+        {path.string(), states[i + 1].line}, "",
+        "a state " + shortest(states[i + 1].time_s - states[i].time_s) +
+            " s after the one before, too far for the interpolation (it is uncertain by " +
+            shortest(std::round(1e3 * error_m) / 10.0) + " % of the distance)",
+        "states closer together, or another INTERPOLATION");
   }
 
   void add_segment(const KvnItem& meta, const std::vector<const KvnItem*>& rows) {
@@ -222,29 +198,29 @@ struct OrbitEphemeris::Reader {
     for (const KvnItem* row : rows) {
       const State state = read_state(*row);
       if (!states.empty() && !(state.time_s > states.back().time_s)) {
-        throw error(row->line, "epoch", "a time at or before that of the row before",
+        throw error(*row, "epoch", "a time at or before that of the row before",
                     "rows in order of time");
       }
       states.push_back(state);
     }
     if (states.size() < 2) {
-      throw error(meta.line, "", std::to_string(states.size()) + " states", "at least two states");
+      throw error(meta, "", std::to_string(states.size()) + " states", "at least two states");
     }
     const auto usable_s = [&](const char* key, double otherwise_s) {
-      const std::string* text = meta.find(key);
-      return text != nullptr ? epoch(*text, key, meta.line).seconds_since(*first) : otherwise_s;
+      const KvnItem* item = meta.find({key});
+      return item != nullptr ? epoch(item->value, key, meta).seconds_since(*first) : otherwise_s;
     };
     const double from_s =
         std::max(states.front().time_s, usable_s("USEABLE_START_TIME", states.front().time_s));
     const double to_s =
         std::min(states.back().time_s, usable_s("USEABLE_STOP_TIME", states.back().time_s));
     if (!(to_s > from_s)) {
-      throw error(meta.line, "USEABLE_STOP_TIME", "no usable time between the states",
+      throw error(meta, "USEABLE_STOP_TIME", "no usable time between the states",
                   "a stop after the start");
     }
     std::vector<Piece>& pieces = into.pieces_;
     if (!pieces.empty() && from_s > pieces.back().to_s + same_instant_s) {
-      throw error(meta.line, "",
+      throw error(meta, "",
                   "a segment that begins " + shortest(from_s - pieces.back().to_s) +
                       " s after the end of the one before",
                   "segments without a gap");
@@ -262,8 +238,8 @@ struct OrbitEphemeris::Reader {
     }
   }
 
-  void read(const KvnItem& message) {
-    required(message, "CCSDS_OEM_VERS");
+  void read() {
+    required(message, {"CCSDS_OEM_VERS"});
     const KvnItem* meta = nullptr;
     std::vector<const KvnItem*> rows;
     const auto end_segment = [&] {
@@ -279,14 +255,14 @@ struct OrbitEphemeris::Reader {
           if (row.kind != KvnItem::Kind::comment) rows.push_back(&row);
         }
       } else if (item.kind == KvnItem::Kind::data) {
-        if (meta == nullptr) throw error(item.line, "", "a row of data", "META_START before it");
+        if (meta == nullptr) throw error(item, "", "a row of data", "META_START before it");
         rows.push_back(&item);
       } else if (item.kind == KvnItem::Kind::block && item.key != "COVARIANCE") {
-        throw error(item.line, "", item.key + "_START", "META_START or COVARIANCE_START");
+        throw error(item, "", item.key + "_START", "META_START or COVARIANCE_START");
       }
     }
     end_segment();
-    if (into.pieces_.empty()) throw error(0, "", "no segment", "META and rows of states");
+    if (into.pieces_.empty()) throw error(message, "", "no segment", "META and rows of states");
     finish();
   }
 
@@ -305,7 +281,7 @@ struct OrbitEphemeris::Reader {
 };
 
 OrbitEphemeris::OrbitEphemeris(const std::filesystem::path& path) : file_(path.string()) {
-  Reader{path, *this, {}, {}, {}}.read(read_message(path));
+  Reader{MessageFile(path), *this, {}, {}, {}}.read();
 }
 
 }  // namespace photorque

@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/recording.h"
 #include "core/settings/typed_keys.h"
 #include "core/text/parse.h"

@@ -4,14 +4,13 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "attitude/recordings/aem.h"
 #include "attitude/recordings/cleaning.h"
-#include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/files.h"
-#include "core/numerics/steady_intervals.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -62,21 +61,6 @@ constexpr std::string_view known_channels[] = {
     "velocity_x_m_s",
     "velocity_y_m_s",
 };
-
-// NaN for an empty cell or the word nan; nullopt if it is no number.
-std::optional<double> to_number(std::string_view cell) {
-  if (cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA") return empty_cell;
-  return number_in(cell);
-}
-
-// The number "0,25" with a decimal comma.
-std::optional<double> with_decimal_comma(std::string_view cell) {
-  const size_t comma = cell.find(',');
-  if (comma == std::string_view::npos) return std::nullopt;
-  std::string with_point(cell);
-  with_point[comma] = '.';
-  return number_in(with_point);
-}
 
 // One column of the file: its channel and the factor to SI.
 struct FileColumn {
@@ -307,12 +291,11 @@ class RecordingReader {
     return options_.rate_Hz ? time / *options_.rate_Hz : time * columns_[*time_column_].to_SI;
   }
 
-  // If commas do not separate cells, they may be decimal commas.
   std::optional<double> number_of(std::string_view cell) {
-    std::optional<double> number = to_number(cell);
-    if (number || separator_ == ',') return number;
-    number = with_decimal_comma(cell);
-    recording_.report.has_decimal_commas = recording_.report.has_decimal_commas || number;
+    const std::optional<double> number = number_of_cell(cell, separator_);
+    if (number && separator_ != ',' && cell.find(',') != std::string_view::npos) {
+      recording_.report.has_decimal_commas = true;
+    }
     return number;
   }
 
@@ -328,29 +311,26 @@ class RecordingReader {
   // Converts a position that rotates about a pivot to an angle. Zero is the vertical on the side of
   // the readings, because y often points down in pictures.
   void read_as_angle(const std::array<double, 2>& pivot_m) {
-    const auto x_at = std::ranges::find(recording_.channels, "x_m", &Channel::name),
-               y_at = std::ranges::find(recording_.channels, "y_m", &Channel::name);
-    if (x_at == recording_.channels.end() || y_at == recording_.channels.end() ||
-        recording_.find("angle_rad") != nullptr) {
+    Channel *x = recording_.find("x_m"), *y_channel = recording_.find("y_m");
+    if (x == nullptr || y_channel == nullptr || recording_.find("angle_rad") != nullptr) {
       throw error("pivot_m", "no columns x_m and y_m, or an angle_rad beside them",
                   "the coordinates of a body that turns about the pivot");
     }
-    Channel& x = *x_at;
-    const std::vector<double>& y = y_at->values;
+    const std::vector<double>& y = y_channel->values;
     double above = 0.0, before = 0.0;
     for (const double value : y) above += std::isfinite(value) ? value - pivot_m[1] : 0.0;
     const double side = above > 0.0 ? 1.0 : -1.0;
     for (size_t i = 0; i < y.size(); ++i) {
-      const double angle = std::atan2(x.values[i] - pivot_m[0], side * (y[i] - pivot_m[1]));
+      const double angle = std::atan2(x->values[i] - pivot_m[0], side * (y[i] - pivot_m[1]));
       if (!std::isfinite(angle)) {
-        x.values[i] = empty_cell;
+        x->values[i] = empty_cell;
         continue;
       }
       before += std::remainder(angle - before, 2.0 * pi);
-      x.values[i] = before;
+      x->values[i] = before;
     }
-    x.name = "angle_rad";
-    recording_.channels.erase(y_at);
+    x->name = "angle_rad";
+    std::erase_if(recording_.channels, [](const Channel& c) { return c.name == "y_m"; });
   }
 
   void finish() {
@@ -376,11 +356,9 @@ class RecordingReader {
       throw error("t_s", "times from " + shortest(first_s) + " to " + shortest(last_s) + " s",
                   "a recording of at most " + shortest(longest_s) + " s, times in seconds");
     }
-    const bool any = std::any_of(recording_.channels.begin(), recording_.channels.end(),
-                                 [](const Channel& channel) {
-                                   return std::any_of(channel.values.begin(), channel.values.end(),
-                                                      [](double x) { return !std::isnan(x); });
-                                 });
+    const bool any = std::ranges::any_of(recording_.channels, [](const Channel& channel) {
+      return !std::ranges::all_of(channel.values, [](double x) { return std::isnan(x); });
+    });
     if (!any) throw error("", "no number in any channel", "at least one channel with values");
     repair_quaternions(recording_);
     if (options_.remove_outliers) remove_outliers(recording_);
@@ -406,96 +384,16 @@ std::string cell_text(double value) {
 }  // namespace
 
 const Channel* Recording::find(std::string_view name) const {
-  const auto it = std::find_if(channels.begin(), channels.end(),
-                               [&](const Channel& channel) { return channel.name == name; });
+  const auto it = std::ranges::find(channels, name, &Channel::name);
   return it == channels.end() ? nullptr : &*it;
 }
 
-Schedule Recording::schedule() const {
-  const Channel* command[3] = {find("command_x_N_m"), find("command_y_N_m"), find("command_z_N_m")};
-  const Channel* force_lab[2] = {find("command_x_N"), find("command_y_N")};
-  const Channel* force_body[2] = {find("command_body_x_N"), find("command_body_y_N")};
-  const Channel* current = find("battery_current_A");
-  Schedule schedule;
-  schedule.current_is_measured = current != nullptr;
-  const LampCurrent lamps(find("led_current_A"));
-  const std::vector<WheelSpeeds> knots = wheel_speeds(*this);
-  size_t next = 0;
-  ZeroOrderHold held;
-  // Before the first knot, the speed of a wheel is on the line of its first interval.
-  if (!knots.empty()) held.wheel = knots.front();
-  // An empty cell keeps the previous value.
-  const auto update = [](const Channel* channel, size_t row, double& value) {
-    if (channel != nullptr && !std::isnan(channel->values[row])) value = channel->values[row];
-  };
-  for (size_t i = 0; i < rows(); ++i) {
-    for (int k = 0; k < 3; ++k) update(command[k], i, held.command_body_N_m[k]);
-    for (int k = 0; k < 2; ++k) {
-      update(force_lab[k], i, held.force_lab_N[k]);
-      update(force_body[k], i, held.force_body_N[k]);
-    }
-    update(current, i, held.battery_current_A);
-    lamps.hold(i, held);
-    for (; next < knots.size() && knots[next].from_s <= time_s[i]; ++next) held.wheel = knots[next];
-    schedule.append(time_s[i], held);
-  }
-  return schedule;
+Channel* Recording::find(std::string_view name) {
+  return const_cast<Channel*>(std::as_const(*this).find(name));
 }
 
 Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options) {
   return RecordingReader(path, options).read();
-}
-
-std::string header_cell_text(std::string_view cell) {
-  std::string latin;
-  int following = 0;  // remaining bytes of a UTF-8 character
-  bool is_utf8 = true;
-  for (const char c : cell) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool continues = (byte & 0xC0U) == 0x80U;
-    is_utf8 = is_utf8 && continues == (following > 0) && byte < 0xF8;
-    following = continues ? following - 1 : byte < 0xC0 ? 0 : byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : 3;
-    if (byte < 0x80) {
-      latin += c;
-    } else {
-      latin += static_cast<char>(0xC0U | byte >> 6U);
-      latin += static_cast<char>(0x80U | (byte & 0x3FU));
-    }
-  }
-  return is_utf8 && following == 0 ? std::string(cell) : latin;
-}
-
-std::string whole_text(const std::filesystem::path& path, const std::vector<std::string>& header) {
-  TextLines lines(path, header);
-  std::string text;
-  for (std::string_view line; lines.next(line);) {
-    text += line;
-    text += '\n';
-  }
-  return text;
-}
-
-Schedule read_command_file(const std::filesystem::path& path) {
-  const Recording recording = read_recording(path);
-  const RecordingReport& report = recording.report;
-  // A recording with an attitude may have faults of its clock and is read like a recording.
-  const bool has_quaternion = recording.find("q_w") != nullptr;
-  if (!has_quaternion && report.backward_times + report.repeated_times > 0) {
-    const int64_t line = report.backward_times == 0 ? report.first_repeated_line
-                         : report.repeated_times == 0
-                             ? report.first_backward_line
-                             : std::min(report.first_repeated_line, report.first_backward_line);
-    throw InputError({path.string(), static_cast<int>(line)}, "t_s", "times that do not rise",
-                     "commands in order of time");
-  }
-  for (const char* name :
-       {"command_x_N_m", "command_y_N_m", "command_z_N_m", "command_x_N", "command_y_N",
-        "command_body_x_N", "command_body_y_N", "battery_current_A", "led_current_A",
-        "wheel_x_rad_s", "wheel_y_rad_s", "wheel_z_rad_s"}) {
-    if (recording.find(name) != nullptr) return recording.schedule();
-  }
-  throw InputError({path.string(), 0}, "header", "no command",
-                   "command_x_N_m, another command, or the speed of a wheel");
 }
 
 void write_recording(const std::filesystem::path& path, const Recording& recording,
@@ -514,8 +412,6 @@ void write_recording(const std::filesystem::path& path, const Recording& recordi
   }
   write_file_whole(path, path.extension() == ".gz" ? gzip(text) : text);
 }
-
-// The report of the reader of recordings, as text.
 
 std::string RecordingReport::text() const {
   std::ostringstream out;
@@ -543,59 +439,6 @@ std::string RecordingReport::text() const {
     out << "\nthe column " << column << ", which [recording] names, is not in it";
   }
   return out.str();
-}
-
-LampCurrent::LampCurrent(const Channel* channel) {
-  if (channel == nullptr) return;
-  double before_A = NAN;
-  for (const double read_A : channel->values) {
-    if (!std::isnan(read_A)) before_A = std::max(0.0, read_A);
-    if (!std::isnan(before_A)) held_A_.push_back(before_A);
-  }
-  missing_ = channel->values.size() - held_A_.size();
-  if (held_A_.empty()) return;
-  const double noise_A = 0.01 * *std::ranges::max_element(held_A_);
-  hold_means(held_A_, noise_A);
-  is_lit_ = noise_A > 0.0;
-}
-
-void LampCurrent::hold(size_t row, ZeroOrderHold& held) const {
-  if (!is_lit_) return;
-  held.led_current_A = held_A_[row < missing_ ? 0 : row - missing_];
-  held.lamps_as_stated = 0.0;
-}
-
-std::vector<WheelSpeeds> wheel_speeds(const Recording& recording) {
-  const Channel* wheel[3] = {recording.find("wheel_x_rad_s"), recording.find("wheel_y_rad_s"),
-                             recording.find("wheel_z_rad_s")};
-  std::vector<WheelSpeeds> knots;
-  if (wheel[0] == nullptr && wheel[1] == nullptr && wheel[2] == nullptr) return knots;
-  constexpr size_t most_knots = 400;
-  const size_t rows = recording.rows();
-  const size_t together = (rows + most_knots - 1) / most_knots;
-  for (size_t first = 0; first < rows; first += together) {
-    const size_t last = std::min(rows, first + together);
-    WheelSpeeds knot;
-    for (size_t i = first; i < last; ++i) knot.from_s += recording.time_s[i];
-    knot.from_s /= static_cast<double>(last - first);
-    for (int k = 0; k < 3; ++k) {
-      double sum = 0.0, count = 0.0;
-      for (size_t i = first; wheel[k] != nullptr && i < last; ++i) {
-        if (std::isnan(wheel[k]->values[i])) continue;
-        sum += wheel[k]->values[i];
-        count += 1.0;
-      }
-      // A block without a reading keeps the speed of the previous one.
-      const double before = knots.empty() ? 0.0 : knots.back().speed_rad_s[k];
-      knot.speed_rad_s[k] = count > 0.0 ? sum / count : before;
-    }
-    knots.push_back(knot);
-  }
-  for (size_t i = 0; i + 1 < knots.size(); ++i) {
-    knots[i].acceleration_rad_s2 =
-        (knots[i + 1].speed_rad_s - knots[i].speed_rad_s) / (knots[i + 1].from_s - knots[i].from_s);
-  }
-  return knots;
 }
 
 }  // namespace photorque

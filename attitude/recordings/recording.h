@@ -69,12 +69,19 @@ struct Recording {
 
   // Null if there is no such channel.
   const Channel* find(std::string_view name) const;
+  Channel* find(std::string_view name);
   size_t rows() const { return time_s.size(); }
 
   // The recorded commands, battery current and wheel speeds, each held until the next row
   // (zero-order hold; wheel speeds are piecewise linear).
   Schedule schedule() const;
 };
+
+// Channels that Recording::schedule() uses.
+inline constexpr std::array schedule_channels = {
+    "command_x_N_m", "command_y_N_m",    "command_z_N_m",     "command_x_N",
+    "command_y_N",   "command_body_x_N", "command_body_y_N",  "wheel_x_rad_s",
+    "wheel_y_rad_s", "wheel_z_rad_s",    "battery_current_A", "led_current_A"};
 
 struct RecordingOptions {
   // Names in the file by channel: {"gyro_x_rad_s", "wx"}. A channel may have another unit of its
@@ -99,9 +106,11 @@ RecordingOptions read_recording_options(const Settings& settings);
 // no header with t_s, no usable row, more cells than allowed, or mostly decreasing times.
 Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options = {});
 
-// InputError for a column that [recording] names but none of these recordings has, for example due
-// to a spelling error.
-void refuse_absent_columns(const Settings& settings, const std::vector<const Recording*>& of);
+// InputError for a column that [recording] names but no recording has, for example due to a
+// spelling error. `absent_columns`: a set of absent names for each recording.
+void refuse_absent_columns(const Settings& recording,
+                           const std::vector<std::set<std::string>>& absent_columns);
+void refuse_absent_columns(const Settings& recording, const std::vector<const Recording*>& of);
 
 // Reads a schedule of commands from a file in the format of a recording. If it has no attitude,
 // that is, no clock of an instrument, times that do not increase are an InputError.
@@ -111,29 +120,6 @@ Schedule read_command_file(const std::filesystem::path& path);
 // comments. Reading the numbers again gives bitwise equal values.
 void write_recording(const std::filesystem::path& path, const Recording& recording,
                      const std::vector<std::string>& preamble = {});
-
-// The recorded current of a laboratory's lamps for a schedule. Changes below a hundredth of the
-// largest current are treated as noise and replaced by their mean, because each change starts a
-// step of the propagation.
-class LampCurrent {
- public:
-  // `channel`: `led_current_A`; null if the recording has none.
-  explicit LampCurrent(const Channel* channel);
-
-  // Writes the current of row `row` to `held`. Rows before the first reading have its value. No
-  // effect if no lamp is lit.
-  void hold(size_t row, ZeroOrderHold& held) const;
-
- private:
-  std::vector<double> held_A_;
-  size_t missing_ = 0;  // rows before the first reading
-  bool is_lit_ = false;
-};
-
-// The measured speeds of wheels for a schedule, `wheel_x_rad_s` …: piecewise linear between means
-// over blocks of rows. There are at most 400 blocks, because each starts a step of the propagation.
-// Empty without such channels.
-std::vector<WheelSpeeds> wheel_speeds(const Recording& recording);
 
 // The keys of [recording].
 Key recording_table();

@@ -243,10 +243,8 @@ void Recorder::add_camera(const Truth& truth) {
              turn_by(truth.camera_error_rad);
     }
   }
-  if (std::isfinite(seen.w())) {
-    // Trackers report the quaternion with a positive scalar.
-    if (seen.w() < 0.0) seen.coeffs() = -seen.coeffs();
-  }
+  // Trackers report the quaternion with a positive scalar.
+  if (seen.w() < 0.0) seen.coeffs() = -seen.coeffs();
   put("q_w", seen.w());
   put("q_x", seen.x());
   put("q_y", seen.y());
@@ -310,10 +308,8 @@ void Recorder::add(const Truth& truth) {
 }
 
 double Recorder::last(std::string_view channel) const {
-  for (const Channel& one : recording_.channels) {
-    if (one.name == channel) return one.values.back();
-  }
-  return empty_cell;
+  const Channel* found = recording_.find(channel);
+  return found != nullptr ? found->values.back() : empty_cell;
 }
 
 Recording Recorder::finish() {
@@ -322,8 +318,7 @@ Recording Recorder::finish() {
   std::erase_if(recording_.channels, [](const Channel& channel) {
     const bool optional = channel.name.starts_with("command") ||
                           channel.name.starts_with("battery") || channel.name.starts_with("array");
-    return optional && std::all_of(channel.values.begin(), channel.values.end(),
-                                   [](double x) { return x == 0.0; });
+    return optional && std::ranges::all_of(channel.values, [](double x) { return x == 0.0; });
   });
   return std::move(recording_);
 }

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -34,16 +35,14 @@ TextLines::TextLines(const std::filesystem::path& path, const std::vector<std::s
 
 void TextLines::skip_to_first_row() {
   fill();
-  const auto is_number = [](std::string_view cell) {
-    std::string with_point(cell);
-    std::ranges::replace(with_point, ',', '.');
-    return cell.empty() || number_in(with_point).has_value();
-  };
   std::vector<std::string_view> cells;
   for (size_t end = 0; (end = buffer_.find('\n', begin_)) != std::string::npos;) {
     const std::string_view line = trimmed(std::string_view(buffer_).substr(begin_, end - begin_));
     for (const char separator : {';', '\t', ',', ' '}) {
       split_cells(line, separator, cells);
+      const auto is_number = [separator](std::string_view cell) {
+        return cell.empty() || !std::isnan(number_of_cell(cell, separator).value_or(NAN));
+      };
       if (line.empty() || cells.size() != header_.size() || !std::ranges::all_of(cells, is_number))
         continue;
       header_line_ = joined_text(header_, std::string(1, separator),
@@ -106,6 +105,45 @@ bool TextLines::next(std::string_view& line) {
   begin_ = last ? end : end + 1;
   if (++number_ == 1 && line.starts_with(byte_order_mark)) line.remove_prefix(3);
   return true;
+}
+
+std::string header_cell_text(std::string_view cell) {
+  std::string latin;
+  int following = 0;  // remaining bytes of a UTF-8 character
+  bool is_utf8 = true;
+  for (const char c : cell) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool continues = (byte & 0xC0U) == 0x80U;
+    is_utf8 = is_utf8 && continues == (following > 0) && byte < 0xF8;
+    following = continues ? following - 1 : byte < 0xC0 ? 0 : byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : 3;
+    if (byte < 0x80) {
+      latin += c;
+    } else {
+      latin += static_cast<char>(0xC0U | byte >> 6U);
+      latin += static_cast<char>(0x80U | (byte & 0x3FU));
+    }
+  }
+  return is_utf8 && following == 0 ? std::string(cell) : latin;
+}
+
+std::string whole_text(const std::filesystem::path& path, const std::vector<std::string>& header) {
+  TextLines lines(path, header);
+  std::string text;
+  for (std::string_view line; lines.next(line);) {
+    text += line;
+    text += '\n';
+  }
+  return text;
+}
+
+std::optional<double> number_of_cell(std::string_view cell, char separator) {
+  if (cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA") return NAN;
+  const std::optional<double> number = number_in(cell);
+  const size_t comma = cell.find(',');
+  if (number || separator == ',' || comma == std::string_view::npos) return number;
+  std::string with_point(cell);
+  with_point[comma] = '.';
+  return number_in(with_point);
 }
 
 std::string gzip(const std::string& text) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,18 @@ class TextLines {
   bool at_end_ = false;
   int64_t number_ = 0;
 };
+
+// All lines of a file, each with "\n". `header` and InputError as for TextLines.
+std::string whole_text(const std::filesystem::path& path,
+                       const std::vector<std::string>& header = {});
+
+// A cell of a header as UTF-8. If it is not valid UTF-8, its bytes are read as Latin-1, as in
+// "Winkel [\xb0]".
+std::string header_cell_text(std::string_view cell);
+
+// The number of a cell. A comma in it is a decimal comma unless commas separate cells. NaN for an
+// empty cell and for the words nan, NaN and NA; nothing for other texts.
+std::optional<double> number_of_cell(std::string_view cell, char separator);
 
 // Compresses to the gzip format, without name or time, so that equal texts give equal bytes.
 std::string gzip(const std::string& text);

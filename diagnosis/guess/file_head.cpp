@@ -30,27 +30,15 @@ std::string clock_unit(const FileHead& head, size_t column) {
 
 namespace {
 
-// Reads a number, also with a decimal comma if the comma is not the separator.
-std::optional<double> number_of_cell(std::string_view cell, char separator) {
-  const std::optional<double> number = number_in(cell);
-  const size_t comma = cell.find(',');
-  if (number || separator == ',' || comma == std::string_view::npos) return number;
-  std::string with_point(cell);
-  with_point[comma] = '.';
-  return number_in(with_point);
-}
-
 std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view>& cells,
                                               char separator, size_t fewest_cells) {
   std::vector<double> numbers;
   bool any = false;
   for (const std::string_view cell : cells) {
     const std::optional<double> number = number_of_cell(cell, separator);
-    if (!number && !cell.empty() && cell != "nan" && cell != "NaN" && cell != "NA") {
-      return std::nullopt;
-    }
-    any = any || number;
-    numbers.push_back(number.value_or(NAN));
+    if (!number) return std::nullopt;
+    any = any || !std::isnan(*number);
+    numbers.push_back(*number);
   }
   if (!any || numbers.size() < fewest_cells) return std::nullopt;
   return numbers;
@@ -168,7 +156,7 @@ FileHead head_of(const std::filesystem::path& path, const std::vector<std::strin
   }
   if (unnamed) throw without_header(path, *unnamed);
   const auto is_number = [](const NumberedLine& line) {
-    return number_of_cell(trimmed(line.text), ';').has_value();
+    return !std::isnan(number_of_cell(trimmed(line.text), ';').value_or(NAN));
   };
   if (2 * std::ranges::count_if(lines, is_number) > static_cast<std::ptrdiff_t>(lines.size())) {
     throw InputError({path.string()}, "header", "one column of numbers",

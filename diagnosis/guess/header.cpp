@@ -1,9 +1,11 @@
 #include "diagnosis/guess/header.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <span>
 
-#include "attitude/recordings/named_columns.h"
+#include "attitude/recordings/text_lines.h"
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
 
@@ -86,16 +88,12 @@ std::string ascii_of(std::string_view text, bool of_unit) {
   return ascii;
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 struct Spelling {
   const char *suffix, *words;  // words between blanks
 };
 
-std::string spelled(const std::string& word, const std::vector<Spelling>& table) {
+// The suffix of the unit that is written so; empty if it is not in the table.
+std::string spelled(const std::string& word, std::span<const Spelling> table) {
   for (const Spelling& one : table) {
     if ((" " + std::string(one.words) + " ").find(" " + word + " ") != std::string::npos) {
       return one.suffix;
@@ -104,68 +102,56 @@ std::string spelled(const std::string& word, const std::vector<Spelling>& table)
   return "";
 }
 
-std::string time_unit(const std::string& word) {
-  static const std::vector<Spelling> table = {
-      {"s",
-       "s sec secs second seconds sek sekunde sekunden seconde secondes seg segs segundo "
-       "segundos secondo secondi"},
-      {"ms",
-       "ms msec msecs millis millisecond milliseconds millisekunde millisekunden milliseconde "
-       "millisecondes milisegundo milisegundos millisecondo millisecondi milissegundo "
-       "milissegundos"},
-      {"us",
-       "us usec usecs micros microsecond microseconds mikrosekunde mikrosekunden microseconde "
-       "microsecondes microsegundo microsegundos microsecondo microsecondi microssegundos"},
-      {"min", "min mins mn minute minutes minuten minuto minutos minuti"},
-      {"h", "h hr hrs hour hours std stunde stunden heure heures hora horas ora ore"}};
-  return spelled(word, table);
-}
+constexpr Spelling times[] = {
+    {"s",
+     "s sec secs second seconds sek sekunde sekunden seconde secondes seg segs segundo "
+     "segundos secondo secondi"},
+    {"ms",
+     "ms msec msecs millis millisecond milliseconds millisekunde millisekunden milliseconde "
+     "millisecondes milisegundo milisegundos millisecondo millisecondi milissegundo "
+     "milissegundos"},
+    {"us",
+     "us usec usecs micros microsecond microseconds mikrosekunde mikrosekunden microseconde "
+     "microsecondes microsegundo microsegundos microsecondo microsecondi microssegundos"},
+    {"min", "min mins mn minute minutes minuten minuto minutos minuti"},
+    {"h", "h hr hrs hour hours std stunde stunden heure heures hora horas ora ore"}};
 
-std::string angle_unit(const std::string& word) {
-  static const std::vector<Spelling> table = {
-      {"rad",
-       "rad rads radian radians radiant radianten radianes radianti radiano radianos "
-       "bogenmass"},
-      {"mrad", "mrad milliradian milliradians"},
-      {"deg", "deg degs degree degrees grad grados grado gradi graus grau degre degres"},
-      {"arcsec", "arcsec arcsecs arcsecond arcseconds bogensekunde bogensekunden"},
-      {"arcmin", "arcmin arcmins arcminute arcminutes bogenminute bogenminuten"}};
-  return spelled(word, table);
-}
+constexpr Spelling angles[] = {
+    {"rad",
+     "rad rads radian radians radiant radianten radianes radianti radiano radianos "
+     "bogenmass"},
+    {"mrad", "mrad milliradian milliradians"},
+    {"deg", "deg degs degree degrees grad grados grado gradi graus grau degre degres"},
+    {"arcsec", "arcsec arcsecs arcsecond arcseconds bogensekunde bogensekunden"},
+    {"arcmin", "arcmin arcmins arcminute arcminutes bogenminute bogenminuten"}};
 
-std::string length_unit(const std::string& word) {
-  static const std::vector<Spelling> table = {
-      {"m", "m meter meters metre metres metro metros metri"},
-      {"cm", "cm centimeter centimeters centimetre centimetres zentimeter centimetros centimetri"},
-      {"mm", "mm millimeter millimeters millimetre millimetres milimetros millimetri"},
-      {"um", "um micron microns"},
-      {"km", "km kilometer kilometers kilometre kilometres kilometros chilometri"}};
-  return spelled(word, table);
-}
+constexpr Spelling lengths[] = {
+    {"m", "m meter meters metre metres metro metros metri"},
+    {"cm", "cm centimeter centimeters centimetre centimetres zentimeter centimetros centimetri"},
+    {"mm", "mm millimeter millimeters millimetre millimetres milimetros millimetri"},
+    {"um", "um micron microns"},
+    {"km", "km kilometer kilometers kilometre kilometres kilometros chilometri"}};
 
-bool is_turn(const std::string& word) {
-  static const std::vector<Spelling> table = {
-      {"rev",
-       "r u rev revs revolution revolutions rot rotation rotations turn turns umdr umd "
-       "umdrehung umdrehungen tr trs tour tours giro giri giros vuelta vueltas volta voltas "
-       "revolucion revoluciones rotacoes rotacao rotazioni cycle cycles"}};
-  return !spelled(word, table).empty();
-}
+constexpr Spelling turns[] = {
+    {"rev",
+     "r u rev revs revolution revolutions rot rotation rotations turn turns umdr umd "
+     "umdrehung umdrehungen tr trs tour tours giro giri giros vuelta vueltas volta voltas "
+     "revolucion revoluciones rotacoes rotacao rotazioni cycle cycles"}};
 
 // The unit "above per below": radians per second for "rad" and "s".
 std::optional<HeaderUnit> ratio(const std::string& above, const std::string& below) {
-  const std::string time = time_unit(below), angle = angle_unit(above);
+  const std::string time = spelled(below, times), angle = spelled(above, angles);
   if (time.empty()) return std::nullopt;
   if (!angle.empty()) {
     const bool is_usual = time == "s" && (angle == "rad" || angle == "deg");
     return HeaderUnit{is_usual ? angle + "_s" : "", "angular rate"};
   }
-  if (is_turn(above) || above == "1") {
+  if (!spelled(above, turns).empty() || above == "1") {
     if (time == "min") return HeaderUnit{"rpm", "angular rate"};
     if (time == "s" && above == "1") return HeaderUnit{"", "per second"};
     return HeaderUnit{time == "s" ? "rev_s" : "", "angular rate"};
   }
-  const std::string length = length_unit(above);
+  const std::string length = spelled(above, lengths);
   if (!length.empty()) {
     std::string suffix = length + "_" + time;
     const KeyUnit known = unit_of_key("speed_" + suffix);
@@ -178,17 +164,15 @@ std::optional<HeaderUnit> ratio(const std::string& above, const std::string& bel
 // A unit as plain text, "rad/s": lower case, one blank between words, no blanks at a slash.
 std::string plain_unit(std::string_view text) {
   std::string kept;
-  for (const char c : lower(ascii_of(text, true))) {
-    if (c == '.' || c == '^' || c == '{' || c == '}' || c == '$' || c == '\\' || c == '(' ||
-        c == ')' || c == '[' || c == ']' || c == '"' || c == '\'') {
-      continue;
-    }
+  for (const char c : lower_case(ascii_of(text, true))) {
+    constexpr std::string_view marks = ".^{}$\\()[]\"'";
+    if (marks.find(c) != std::string_view::npos) continue;
     kept += c == '*' || c == '_' ? ' ' : c;
   }
   std::string plain;
   for (const std::string_view word : words_of(kept)) {
-    const bool is_per = word == "per" || word == "pro" || word == "par" || word == "por" ||
-                        word == "al" || word == "a" || word == "je";
+    constexpr std::string_view per[] = {"per", "pro", "par", "por", "al", "a", "je"};
+    const bool is_per = std::ranges::find(per, word) != std::end(per);
     const std::string_view one = is_per && !plain.empty() ? "/" : word;
     if (!plain.empty() && !plain.ends_with('/') && !one.starts_with('/')) plain += ' ';
     plain += one;
@@ -212,74 +196,46 @@ std::optional<HeaderUnit> with_exponent(std::string plain) {
 }  // namespace
 
 std::optional<HeaderUnit> unit_written(std::string_view text) {
+  using Units = std::vector<std::pair<HeaderUnit, std::vector<std::string>>>;
   // The case of these letters determines the unit.
-  static const std::vector<std::pair<const char*, HeaderUnit>> cased = {
-      {"T", {"T", "magnetic field"}},    {"uT", {"uT", "magnetic field"}},
-      {"nT", {"nT", "magnetic field"}},  {"mT", {"", "magnetic field"}},
-      {"G", {"", "magnetic field"}},     {"gauss", {"", "magnetic field"}},
-      {"Gauss", {"", "magnetic field"}}, {"V", {"V", "voltage"}},
-      {"mV", {"mV", "voltage"}},         {"A", {"A", "current"}},
-      {"mA", {"mA", "current"}}};
-  static const std::vector<std::pair<const char*, HeaderUnit>> whole = {
-      {"rpm", {"rpm", "angular rate"}},
-      {"upm", {"rpm", "angular rate"}},
-      {"rps", {"rev_s", "angular rate"}},
-      {"dps", {"deg_s", "angular rate"}},
-      {"hz", {"rev_s", "frequency"}},
-      {"hertz", {"rev_s", "frequency"}},
-      {"rad s", {"rad_s", "angular rate"}},
-      {"deg s", {"deg_s", "angular rate"}},
-      {"m/s2", {"m_s2", "acceleration"}},
-      {"m/s/s", {"m_s2", "acceleration"}},
-      {"m s-2", {"m_s2", "acceleration"}},
-      {"ms-2", {"m_s2", "acceleration"}},
-      {"g", {"", "acceleration"}},
-      {"mg", {"", "acceleration"}},
-      {"rad/s2", {"", "angular acceleration"}},
-      {"rad/s/s", {"", "angular acceleration"}},
-      {"deg/s2", {"", "angular acceleration"}},
-      {"deg/s/s", {"", "angular acceleration"}},
-      {"rad s-2", {"", "angular acceleration"}},
-      {"deg s-2", {"", "angular acceleration"}},
-      {"mph", {"mph", "speed"}},
-      {"kmh", {"km_h", "speed"}},
-      {"kph", {"km_h", "speed"}},
-      {"km h", {"km_h", "speed"}},
-      {"knots", {"", "speed"}},
-      {"volt", {"V", "voltage"}},
-      {"volts", {"V", "voltage"}},
-      {"voltios", {"V", "voltage"}},
-      {"millivolt", {"mV", "voltage"}},
-      {"millivolts", {"mV", "voltage"}},
-      {"amp", {"A", "current"}},
-      {"amps", {"A", "current"}},
-      {"ampere", {"A", "current"}},
-      {"amperes", {"A", "current"}},
-      {"amperios", {"A", "current"}},
-      {"milliampere", {"mA", "current"}},
-      {"milliamps", {"mA", "current"}},
-      {"ma/cm2", {"mA", "current density"}},
-      {"ma cm-2", {"mA", "current density"}},
-      {"macm-2", {"mA", "current density"}},
-      {"a/cm2", {"A", "current density"}},
-      {"a cm-2", {"A", "current density"}},
-      {"acm-2", {"A", "current density"}},
-      {"a/m2", {"A", "current density"}},
-      {"a m-2", {"A", "current density"}}};
-  const std::string as_written(trimmed(ascii_of(text, true)));
-  for (const auto& [word, unit] : cased) {
-    if (as_written == word) return unit;
-  }
-  const std::string plain = plain_unit(text);
-  for (const auto& [word, unit] : whole) {
-    if (plain == word) return unit;
-  }
-  if (const std::string time = time_unit(plain); !time.empty()) return HeaderUnit{time, "time"};
-  if (const std::string angle = angle_unit(plain); !angle.empty()) {
-    return HeaderUnit{angle, "angle"};
-  }
-  if (const std::string length = length_unit(plain); !length.empty()) {
-    return HeaderUnit{length, "length"};
+  static const Units cased = {
+      {{"T", "magnetic field"}, {"T"}},   {{"uT", "magnetic field"}, {"uT"}},
+      {{"nT", "magnetic field"}, {"nT"}}, {{"", "magnetic field"}, {"mT", "G", "gauss", "Gauss"}},
+      {{"V", "voltage"}, {"V"}},          {{"mV", "voltage"}, {"mV"}},
+      {{"A", "current"}, {"A"}},          {{"mA", "current"}, {"mA"}}};
+  static const Units whole = {
+      {{"rpm", "angular rate"}, {"rpm", "upm"}},
+      {{"rev_s", "angular rate"}, {"rps"}},
+      {{"deg_s", "angular rate"}, {"dps", "deg s"}},
+      {{"rad_s", "angular rate"}, {"rad s"}},
+      {{"rev_s", "frequency"}, {"hz", "hertz"}},
+      {{"m_s2", "acceleration"}, {"m/s2", "m/s/s", "m s-2", "ms-2"}},
+      {{"", "acceleration"}, {"g", "mg"}},
+      {{"", "angular acceleration"},
+       {"rad/s2", "rad/s/s", "deg/s2", "deg/s/s", "rad s-2", "deg s-2"}},
+      {{"mph", "speed"}, {"mph"}},
+      {{"km_h", "speed"}, {"kmh", "kph", "km h"}},
+      {{"", "speed"}, {"knots"}},
+      {{"V", "voltage"}, {"volt", "volts", "voltios"}},
+      {{"mV", "voltage"}, {"millivolt", "millivolts"}},
+      {{"A", "current"}, {"amp", "amps", "ampere", "amperes", "amperios"}},
+      {{"mA", "current"}, {"milliampere", "milliamps"}},
+      {{"mA", "current density"}, {"ma/cm2", "ma cm-2", "macm-2"}},
+      {{"A", "current density"}, {"a/cm2", "a cm-2", "acm-2", "a/m2", "a m-2"}}};
+  const std::string as_written(trimmed(ascii_of(text, true))), plain = plain_unit(text);
+  const auto unit_in = [](const Units& units, const std::string& word) -> const HeaderUnit* {
+    for (const auto& [unit, words] : units) {
+      if (std::ranges::find(words, word) != words.end()) return &unit;
+    }
+    return nullptr;
+  };
+  if (const HeaderUnit* unit = unit_in(cased, as_written)) return *unit;
+  if (const HeaderUnit* unit = unit_in(whole, plain)) return *unit;
+  const std::pair<std::span<const Spelling>, const char*> spellings[] = {
+      {times, "time"}, {angles, "angle"}, {lengths, "length"}};
+  for (const auto& [table, dimension] : spellings) {
+    const std::string suffix = spelled(plain, table);
+    if (!suffix.empty()) return HeaderUnit{suffix, dimension};
   }
   const size_t slash = plain.find('/');
   if (slash != std::string::npos && plain.find('/', slash + 1) == std::string::npos) {

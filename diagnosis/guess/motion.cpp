@@ -8,7 +8,7 @@
 #include "attitude/observation/noise_levels.h"
 #include "attitude/recordings/columns.h"
 #include "attitude/recordings/kvn.h"
-#include "attitude/recordings/named_columns.h"
+#include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/linear.h"
@@ -48,9 +48,11 @@ struct Machine {
   std::optional<int> rate_from;
 
   bool has(const char* channel) const { return recordings.front().find(channel) != nullptr; }
+  bool has_one_of(std::initializer_list<const char*> channels) const {
+    return std::ranges::any_of(channels, [&](const char* c) { return has(c); });
+  }
   bool has_all(std::initializer_list<const char*> channels) const {
-    return std::all_of(channels.begin(), channels.end(),
-                       [&](const char* c) { return this->has(c); });
+    return std::ranges::all_of(channels, [&](const char* c) { return has(c); });
   }
   bool sees_attitude() const {
     return has_all({"q_w", "q_x", "q_y", "q_z"}) || has_all({"roll_rad", "pitch_rad", "yaw_rad"});
@@ -224,12 +226,11 @@ bool infer_oscillation_from_rates(Machine& m, int k, const std::string& seen) {
 
 // Selects the axis of rotation, and whether weight may act as a restoring torque.
 void infer_one_axis(Machine& m) {
-  const char* const letters[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
-    if (!m.has((std::string("gyro_") + letters[k] + "_rad_s").c_str())) continue;
+    if (!m.has((std::string("gyro_") + "xyz"[k] + "_rad_s").c_str())) continue;
     m.observe_as(Topology::one_axis, Vec3::Unit(k));
     if (infer_oscillation_from_rates(m, k, "one rate that passes zero again and again")) return;
-    m.why = std::string("the one gyro axis is ") + letters[k] + ", so it turns about that alone.";
+    m.why = std::string("the one gyro axis is ") + "xyz"[k] + ", so it turns about that alone.";
     return;
   }
   const bool has_angle = !m.has("rate_rad_s") || m.has("angle_rad") || m.has("roll_rad");
@@ -311,12 +312,10 @@ void infer_machine(Machine& m) {
         "9.80665 m/s² across it.";
     return m.observe_as(Topology::planar);
   }
-  const auto has_one_of = [&](std::initializer_list<const char*> channels) {
-    return std::ranges::any_of(channels, [&](const char* c) { return m.has(c); });
-  };
-  if (!has_one_of({"angle_rad", "roll_rad", "pitch_rad", "yaw_rad", "rate_rad_s", "q_w", "tilt_rad",
-                   "gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s", "rate_magnitude_rad_s"}) &&
-      has_one_of({"x_m", "y_m", "velocity_x_m_s", "velocity_y_m_s"})) {
+  if (!m.has_one_of({"angle_rad", "roll_rad", "pitch_rad", "yaw_rad", "rate_rad_s", "q_w",
+                     "tilt_rad", "gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s",
+                     "rate_magnitude_rad_s"}) &&
+      m.has_one_of({"x_m", "y_m", "velocity_x_m_s", "velocity_y_m_s"})) {
     m.why = std::string(has_x || has_y ? "one coordinate" : "a speed") +
             " along a line: a cart on a track, a mass on a spring, a vehicle. Gravity is "
             "9.80665 m/s² across it; the weight of what hangs is part of the spring's pull.";
@@ -402,14 +401,13 @@ std::vector<GuessedColumn> with_rate_from(std::vector<GuessedColumn> columns, in
 void require_motion(const fs::path& path, const std::vector<GuessedColumn>& columns,
                     const RecordingOptions& reading) {
   if (is_message(path, "AEM")) return;
-  const bool counts =
-      std::ranges::any_of(columns, [](const GuessedColumn& c) { return c.channel == "frame"; });
-  const bool has_time = reading.rate_Hz || std::ranges::any_of(columns, [](const GuessedColumn& c) {
-                          return c.channel.starts_with("t_");
-                        });
+  const auto any = [&columns](const auto& is) { return std::ranges::any_of(columns, is); };
+  const bool counts = any([](const GuessedColumn& c) { return c.channel == "frame"; });
+  const bool has_time =
+      reading.rate_Hz || any([](const GuessedColumn& c) { return c.channel.starts_with("t_"); });
   if (has_time && has_motion(columns)) return;
-  const bool are_several = std::ranges::any_of(
-      columns, [](const GuessedColumn& c) { return c.channel.empty() && !c.because.empty(); });
+  const bool are_several =
+      any([](const GuessedColumn& c) { return c.channel.empty() && !c.because.empty(); });
   std::string found = "no time among ",
               expected =
                   counts ? "frames per second beside the frames: --rate-Hz 30"
@@ -544,11 +542,8 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
     const int x = vector_channels + static_cast<int>(Scalar::position_x);
     add_noise(document, m.runs, {x, x + 1}, "position.noise_m", 1.0);
   }
-  std::string unused;
-  for (const std::string& name :
-       MotionColumns(m.recordings.front(), m.platform, m.names.front()).unused()) {
-    unused += (unused.empty() ? "" : ", ") + name;
-  }
+  const std::string unused =
+      joined_text(MotionColumns(m.recordings.front(), m.platform, m.names.front()).unused(), ", ");
   if (!unused.empty()) document.comment("Unused columns: " + unused + ".");
 }
 

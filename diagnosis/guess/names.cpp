@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "attitude/recordings/kvn.h"
-#include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
 #include "core/settings/settings.h"
@@ -18,11 +17,11 @@ namespace photorque {
 namespace {
 
 bool begins(const std::string& word, std::initializer_list<const char*> with) {
-  return std::any_of(with.begin(), with.end(), [&](const char* w) { return word.starts_with(w); });
+  return std::ranges::any_of(with, [&](const char* w) { return word.starts_with(w); });
 }
 
 bool is_one_of(const std::string& word, std::initializer_list<const char*> of) {
-  return std::any_of(of.begin(), of.end(), [&](const char* w) { return word == w; });
+  return std::ranges::find(of, word) != of.end();
 }
 
 // The words of a column name, with tests on them.
@@ -38,8 +37,8 @@ struct Words {
   // Part of a word: "winkel" of "Auslenkwinkel".
   bool any_has(std::initializer_list<const char*> parts) const {
     return std::ranges::any_of(all, [&](const std::string& word) {
-      return std::any_of(parts.begin(), parts.end(),
-                         [&](const char* part) { return word.find(part) != std::string::npos; });
+      return std::ranges::any_of(
+          parts, [&](const char* part) { return word.find(part) != std::string::npos; });
     });
   }
 };
@@ -190,12 +189,8 @@ std::vector<Meaning> meanings(const Words& words, const std::string& axis, const
     }
   }
   // p, q and r are the rates of an aircraft about body x, y and z; n is a rotational speed.
-  const auto all_are = [&](const char* word) {
-    return words.all == std::vector<std::string>{word};
-  };
-  for (const size_t k : {0, 1, 2}) {
-    const char* const letters[] = {"p", "q", "r"};
-    if (has_rate_unit && all_are(letters[k])) {
+  for (size_t k = 0; k < 3; ++k) {
+    if (has_rate_unit && words.all == std::vector{std::string(1, "pqr"[k])}) {
       all.push_back({std::string("gyro_") + "xyz"[k], "rad_s",
                      "p, q and r count as rates about body x, y and z in"});
     }
@@ -294,6 +289,15 @@ ReadColumn by_unit(const std::string& in_file, const HeaderCell& cell, const Wor
   return column;
 }
 
+// The largest magnitude in the first rows of a column.
+double largest_in(const FileHead& head, size_t column) {
+  double largest = 0.0;
+  for (const auto& row : head.rows) {
+    if (std::isfinite(row[column])) largest = std::max(largest, std::abs(row[column]));
+  }
+  return largest;
+}
+
 // Unit of coordinates without a stated unit: metres, or millimetres if a value exceeds the size of
 // any table.
 std::string unit_of_coordinates(const FileHead& head, const std::vector<Words>& siblings,
@@ -301,10 +305,8 @@ std::string unit_of_coordinates(const FileHead& head, const std::vector<Words>& 
   constexpr double longest_m = 20.0;
   double most = 0.0;
   for (size_t k = 0; k < siblings.size(); ++k) {
-    if (k != place && !siblings[k].any_is({"x", "y"})) continue;
-    for (const auto& row : head.rows) {
-      if (std::isfinite(row[k])) most = std::max(most, std::abs(row[k]));
-    }
+    const bool is_coordinate = k == place || siblings[k].any_is({"x", "y"});
+    if (is_coordinate) most = std::max(most, largest_in(head, k));
   }
   return most > longest_m ? "mm" : "m";
 }
@@ -334,6 +336,12 @@ ReadColumn read_column(const FileHead& head, size_t place, HeaderCell cell,
     column.guess.because = !is_stated ? "the header states no unit of" : meaning.because;
     return column;
   };
+  const auto has_wrong_unit = [&](const Meaning& meaning) {
+    column.stem = meaning.stem;
+    column.dimension = dimension_of(meaning);
+    column.wrong_unit = cell.unit_text;
+    return column;
+  };
   if (cell.unit) {
     for (const Meaning& meaning : all) {
       const std::string unit = fitting_unit(cell, dimension_of(meaning), words);
@@ -347,19 +355,11 @@ ReadColumn read_column(const FileHead& head, size_t place, HeaderCell cell,
     for (const Meaning& meaning : all) {
       const std::string dimension = dimension_of(meaning);
       const bool contradicts = is_of_turns(dimension) && is_of_turns(cell.unit->dimension);
-      if (cell.unit->dimension != dimension && !contradicts) continue;
-      column.stem = meaning.stem;
-      column.dimension = dimension;
-      column.wrong_unit = cell.unit_text;
-      return column;
+      if (cell.unit->dimension == dimension || contradicts) return has_wrong_unit(meaning);
     }
     if (!cell.may_be_subscript) return by_unit(in_file, cell, words);
   } else if (!cell.unit_text.empty()) {
-    if (all.empty()) return column;
-    column.stem = all.front().stem;
-    column.dimension = dimension_of(all.front());
-    column.wrong_unit = cell.unit_text;
-    return column;
+    return all.empty() ? column : has_wrong_unit(all.front());
   }
   if (all.empty()) return by_unit(in_file, cell, words);
   const Meaning& meaning = all.front();
@@ -504,16 +504,12 @@ GuessedCurve guess_curve(const std::filesystem::path& path,
     if (is_of_another_kind(words)) continue;
     const std::string dimension = cell.unit ? cell.unit->dimension : "";
     const bool no_unit = !cell.unit && cell.unit_text.empty();
-    const auto symbol = [&](const char* letter) {
-      return words.any_is({letter}) && !words.all.empty();
-    };
     const bool is_voltage =
         words.any_has({"voltage", "spannung", "voltaje", "tension", "tensao"}) ||
-        words.any_is({"volt", "volts"}) || symbol("u") || symbol("v") ||
-        words.any_is({"vpv", "upv", "vmod", "umod"});
+        words.any_is({"volt", "volts", "u", "v", "vpv", "upv", "vmod", "umod"});
     const bool is_current =
         words.any_has({"current", "strom", "courant", "corriente", "corrente"}) ||
-        words.any_is({"amp", "amps", "ampere", "ipv", "imod"}) || symbol("i") || symbol("j");
+        words.any_is({"amp", "amps", "ampere", "i", "j", "ipv", "imod"});
     if (dimension == "voltage" || (is_voltage && !is_current && no_unit)) voltages.push_back(place);
     if (dimension == "current" || dimension == "current density" ||
         (is_current && !is_voltage && no_unit)) {
@@ -527,14 +523,8 @@ GuessedCurve guess_curve(const std::filesystem::path& path,
   const bool is_density = current.unit ? current.unit->dimension == "current density"
                                        : Words{current.words}.any_is({"j"});
   std::string unit = current.unit ? current.unit->suffix : "A";
-  if (is_density && !current.unit) {
-    double most = 0.0;
-    for (const auto& row : head.rows) {
-      if (std::isfinite(row[currents[0]])) most = std::max(most, std::abs(row[currents[0]]));
-    }
-    // Sunlight generates at most 0.07 A/cm² in one junction, so larger numbers are in mA/cm².
-    unit = most > 0.5 ? "mA" : "A";
-  }
+  // Sunlight generates at most 0.07 A/cm² in one junction, so larger numbers are in mA/cm².
+  if (is_density && !current.unit) unit = largest_in(head, currents[0]) > 0.5 ? "mA" : "A";
   curve.columns["current_" + unit] = header_cell_text(head.header[currents[0]]);
   if (is_density) {
     curve.because =

@@ -17,37 +17,12 @@ void add_numbers(LightCandidate& c) {
   }
 }
 
-size_t count_of(const LightLab& lab, LightEffectKind::Index index) {
-  switch (index) {
-    case LightEffectKind::Index::none:
-      return 1;
-    case LightEffectKind::Index::lamp:
-      return lab.lamps();
-    case LightEffectKind::Index::cell:
-      return lab.cells().size();
-    case LightEffectKind::Index::string:
-      return lab.parts().strings();
-    case LightEffectKind::Index::bypass:
-      return lab.parts().bypasses();
-    case LightEffectKind::Index::wall:
-      return lab.walls().size();
-    case LightEffectKind::Index::frame:
-      return 2;
-  }
-  return 0;
-}
-
 bool can_show(const LightEffectKind& kind, const std::vector<FittedRun>& runs) {
   return std::ranges::any_of(runs, [&](const FittedRun& r) {
-    switch (r.run->recording().kind) {
-      case LightRecording::Kind::scan:
-        return kind.in_scans;
-      case LightRecording::Kind::sweep:
-        return kind.in_sweeps;
-      case LightRecording::Kind::run:
-        return kind.in_runs;
-    }
-    return false;
+    const LightRecording::Kind of = r.run->recording().kind;
+    return of == LightRecording::Kind::scan    ? kind.in_scans
+           : of == LightRecording::Kind::sweep ? kind.in_sweeps
+                                               : kind.in_runs;
   });
 }
 
@@ -111,7 +86,7 @@ LightCandidates light_candidates(const LightLab& lab, const NominalLight& nomina
     const bool is_nominal = std::ranges::any_of(
         nominal.uncertain, [&](const LightPrior& p) { return p.key.starts_with(kind.name + "."); });
     if (is_nominal) continue;
-    const size_t count = count_of(lab, kind.index);
+    const size_t count = lab.parts().count_of(kind.index);
     const bool bends = kind.index == LightEffectKind::Index::cell &&
                        std::ranges::any_of(runs, [](const FittedRun& r) {
                          return r.run->recording().kind != LightRecording::Kind::scan;
@@ -121,9 +96,7 @@ LightCandidates light_candidates(const LightLab& lab, const NominalLight& nomina
     for (size_t i = 0; i < count && !is_only; ++i) {
       LightCandidate c{kind, i, kind.name, {}, {}};
       c.bends = bends;
-      const bool has_number =
-          kind.index != LightEffectKind::Index::none && kind.index != LightEffectKind::Index::frame;
-      if (has_number) c.label += "[" + std::to_string(i) + "]";
+      if (kind.is_numbered()) c.label += "[" + std::to_string(i) + "]";
       add_numbers(c);
       all.list.push_back(std::move(c));
     }

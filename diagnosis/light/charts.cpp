@@ -70,61 +70,47 @@ namespace {
 
 using Expected = std::vector<LightRun::Expected>;
 
-ChannelSeries channel_of(const LightRecording& r, const std::vector<double>& measured,
-                         const Expected& before, const Expected& after,
-                         double LightRun::Expected::*reading, double noise) {
-  ChannelSeries channel;
-  channel.time_s = r.time_s;
-  channel.measured = measured;
-  channel.noise = noise;
-  for (size_t i = 0; i < r.rows(); ++i) {
-    channel.before.push_back(before[i].*reading);
-    channel.after.push_back(after[i].*reading);
-    channel.residual_before.push_back(measured[i] - channel.before.back());
-    channel.residual_after.push_back(measured[i] - channel.after.back());
-  }
-  return channel;
-}
-
 void add_channels(const FittedRun& run, const Expected& before, const Expected& after,
                   RecordingSeries& series) {
   const LightRecording& r = run.run->recording();
   const LightNoise& noise = run.run->lab().noise();
-  if (run.run->channels().size() > 1) {
-    ChannelSeries voltage =
-        channel_of(r, r.voltage_V, before, after, &LightRun::Expected::voltage_V, noise.voltage_V);
-    voltage.name = "array_voltage_V";
-    voltage.label = "Voltage of the array";
-    voltage.unit = voltage.residual_unit = "V";
-    series.channels.push_back(std::move(voltage));
+  for (const LightRun::Channel& read : run.run->channels()) {
+    const bool is_voltage = read.expected == &LightRun::Expected::voltage_V;
+    ChannelSeries channel;
+    channel.name = read.name;
+    channel.label = is_voltage ? "Voltage of the array" : "Current of the array";
+    channel.unit = channel.residual_unit = is_voltage ? "V" : "A";
+    channel.time_s = r.time_s;
+    channel.measured = r.*read.measured;
+    channel.noise = is_voltage ? noise.voltage_V : noise.current_A;
+    for (size_t i = 0; i < r.rows(); ++i) {
+      channel.before.push_back(before[i].*read.expected);
+      channel.after.push_back(after[i].*read.expected);
+      channel.residual_before.push_back(channel.measured[i] - channel.before.back());
+      channel.residual_after.push_back(channel.measured[i] - channel.after.back());
+    }
+    series.channels.push_back(std::move(channel));
   }
-  ChannelSeries current =
-      channel_of(r, r.current_A, before, after, &LightRun::Expected::current_A, noise.current_A);
-  current.name = "array_current_A";
-  current.label = "Current of the array";
-  current.unit = current.residual_unit = "A";
-  series.channels.push_back(std::move(current));
   series.attitude.time_s = r.time_s;
   series.attitude.measured = r.lab_from_body;
 }
 
 LightSeries rows_of(const FittedRun& run, const Expected& before, const Expected& after) {
   const LightRecording& r = run.run->recording();
-  const bool is_scan = r.kind == LightRecording::Kind::scan;
+  const LightRun::Channel& read = run.run->channels().front();
   LightSeries rows;
-  rows.name = is_scan ? "irradiance_W_m2" : "current_A";
+  rows.name = read.name;
   rows.u_m = r.u_m;
   rows.v_m = r.v_m;
   rows.voltage_V = r.voltage_V;
   rows.sweep = r.sweep;
   rows.lab_from_body = r.lab_from_body;
-  rows.measured = is_scan ? r.irradiance_W_m2 : r.current_A;
-  const auto reading =
-      is_scan ? &LightRun::Expected::irradiance_W_m2 : &LightRun::Expected::current_A;
+  rows.measured = r.*read.measured;
   for (size_t i = 0; i < r.rows(); ++i) {
-    rows.before.push_back(before[i].*reading);
-    rows.after.push_back(after[i].*reading);
-    rows.noise.push_back(is_scan ? run.run->row_noise(i) : run.run->lab().noise().current_A);
+    rows.before.push_back(before[i].*read.expected);
+    rows.after.push_back(after[i].*read.expected);
+    rows.noise.push_back(r.kind == LightRecording::Kind::scan ? run.run->row_noise(i)
+                                                              : run.run->lab().noise().current_A);
   }
   return rows;
 }

@@ -19,7 +19,26 @@ namespace {
 struct LightData {
   std::vector<FittedRun> train, held;
   DataQuality quality;
+
+  std::vector<FittedRun> all() const {
+    std::vector<FittedRun> runs = train;
+    runs.insert(runs.end(), held.begin(), held.end());
+    return runs;
+  }
 };
+
+// There is a candidate for every lamp and cell, and light is nearly linear in the effects, so few
+// steps suffice. (Circuits are not linear: the right candidate may have a small forecast.)
+Thresholds light_thresholds() {
+  Thresholds limits;
+  limits.held_out.max_leaders = 6;
+  limits.leaders.max_leaders = 4;
+  limits.fitting.slow_blocks = 400;
+  limits.fitting.trial_iterations = 10;
+  limits.fitting.patient_iterations = 20;
+  limits.search.max_effects = 3;
+  return limits;
+}
 
 void tell(const LightDiagnoseOptions& options, const std::string& what) {
   if (options.progress) options.progress(what);
@@ -31,11 +50,13 @@ Eigen::VectorXd nominal_residuals(const FittedRun& run, const NominalLight& nomi
 
 // Thins a long recording and removes outliers.
 FittedRun observed(const LightLab& lab, const NominalLight& nominal, LightRecording recording,
-                   int number, const LightDiagnoseOptions& options, DataQuality& quality) {
+                   int number, DataQuality& quality) {
+  // Longer recordings are thinned to every n-th row.
+  constexpr size_t max_rows = 5000, max_scan_rows = 12000;
   quality.rows += recording.rows_read;
   for (const auto& [reason, count] : recording.rejected) quality.rejected[reason] += count;
   const bool is_scan = recording.kind == LightRecording::Kind::scan;
-  const size_t rows = recording.rows(), most = is_scan ? options.max_scan_rows : options.max_rows;
+  const size_t rows = recording.rows(), most = is_scan ? max_scan_rows : max_rows;
   if (rows > most) {
     const size_t every = (rows + most - 1) / most;
     std::vector<size_t> some;
@@ -47,7 +68,7 @@ FittedRun observed(const LightLab& lab, const NominalLight& nominal, LightRecord
   whole.set_number(number);
   FittedRun run = prepared_run(std::move(whole), nominal);
   const std::vector<size_t> good =
-      rows_without_outliers(*run.run, nominal_residuals(run, nominal), options.limits.noise);
+      rows_without_outliers(*run.run, nominal_residuals(run, nominal), light_thresholds().noise);
   if (good.size() < run.run->rows()) {
     quality.rejected["outlier"] += static_cast<int64_t>(run.run->rows() - good.size());
     run = part_of(run, good, nominal);
@@ -57,17 +78,15 @@ FittedRun observed(const LightLab& lab, const NominalLight& nominal, LightRecord
 }
 
 // Rows to fit and rows to hold out if no holdout is given. Of a recording over time or of sweeps,
-// the last part is held out. Of a scan every n-th row is held out, because its last part is only a
-// corner of the receiver.
-std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run, double fraction) {
+// the last quarter is held out. Of a scan every fourth row is held out, because its last part is
+// only a corner of the receiver.
+std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run) {
   std::vector<size_t> fitted, held;
   const size_t rows = run.rows();
   const bool scan = run.recording().kind == LightRecording::Kind::scan;
-  const auto every = static_cast<size_t>(std::lround(1.0 / fraction));
   for (size_t i = 0; i < rows; ++i) {
     const bool is_held =
-        scan ? i % every == every - 1
-             : static_cast<double>(i) >= (1.0 - fraction) * static_cast<double>(rows);
+        scan ? i % 4 == 3 : static_cast<double>(i) >= 0.75 * static_cast<double>(rows);
     (is_held ? held : fitted).push_back(i);
   }
   return {fitted, held};
@@ -89,19 +108,18 @@ void require_enough(const LightData& data, const std::string& first) {
 
 LightData read_light_data(const LightLab& lab, const NominalLight& nominal,
                           std::vector<LightRecording> recordings,
-                          std::vector<LightRecording> holdouts,
-                          const LightDiagnoseOptions& options) {
+                          std::vector<LightRecording> holdouts) {
   LightData data;
   int number = 0;
   for (LightRecording& r : recordings) {
-    data.train.push_back(observed(lab, nominal, std::move(r), number++, options, data.quality));
+    data.train.push_back(observed(lab, nominal, std::move(r), number++, data.quality));
   }
   for (LightRecording& r : holdouts) {
-    data.held.push_back(observed(lab, nominal, std::move(r), number++, options, data.quality));
+    data.held.push_back(observed(lab, nominal, std::move(r), number++, data.quality));
   }
   if (data.held.empty()) {
     for (FittedRun& run : data.train) {
-      const auto [fitted, held] = split(*run.run, options.holdout_fraction);
+      const auto [fitted, held] = split(*run.run);
       if (held.empty() || fitted.empty()) continue;
       data.held.push_back(part_of(run, held, nominal));
       run = part_of(run, fitted, nominal);
@@ -134,7 +152,7 @@ bool drop_light_outliers(const LightTrial& about, const LightCandidates& all, Li
 
 LightAnswer explain_light(const LightLab& lab, const NominalLight& nominal, LightData& data,
                           const LightDiagnoseOptions& options) {
-  LightAnswer answer{light_candidates(lab, nominal, data.train, options.limits), {}, {}};
+  LightAnswer answer{light_candidates(lab, nominal, data.train, light_thresholds()), {}, {}};
   const LightDomain domain(answer.all);
   tell(options, "fitting every effect of the catalogue");
   answer.trials = inference::search(domain, nominal_light_trial(answer.all, data.train), data.train,
@@ -153,8 +171,7 @@ LightAnswer explain_light(const LightLab& lab, const NominalLight& nominal, Ligh
   }
   tell(options, "comparing with the held-out data");
   inference::weigh_with_held_out(domain, data.train, data.held, options.threads, answer.trials);
-  std::vector<FittedRun> everything = data.train;
-  everything.insert(everything.end(), data.held.begin(), data.held.end());
+  const std::vector<FittedRun> everything = data.all();
   const inference::Checks checks{
       .excess_sigma =
           [&](size_t trial) { return domain.excess_sigma(answer.trials[trial], data.train); },
@@ -169,37 +186,28 @@ LightAnswer explain_light(const LightLab& lab, const NominalLight& nominal, Ligh
                                       options.threads);
           }};
   answer.decision = inference::decide({answer.trials.begin(), answer.trials.end()},
-                                      domain.candidates(), checks, options.limits.decision);
+                                      domain.candidates(), checks, domain.limits().decision);
   return answer;
 }
 
 std::map<std::string, double> rms_of(const LightTrial& trial, const LightCandidates& all,
                                      const std::vector<FittedRun>& runs) {
-  std::map<std::string, double> sum;
-  std::map<std::string, int64_t> count;
+  std::map<std::string, std::pair<double, int64_t>> sums;
   const LightState state = state_of(trial, all);
   for (const FittedRun& run : runs) {
     const LightRecording& r = run.run->recording();
     const auto expected = run.run->expected(state);
-    const auto add = [&](const std::string& channel, double off) {
-      sum[channel] += off * off;
-      ++count[channel];
-    };
-    for (size_t i = 0; i < r.rows(); ++i) {
-      if (r.kind == LightRecording::Kind::scan) {
-        add("irradiance_W_m2", r.irradiance_W_m2[i] - expected[i].irradiance_W_m2);
-        continue;
-      }
-      const bool run_of_array = r.kind == LightRecording::Kind::run;
-      add(run_of_array ? "array_current_A" : "current_A", r.current_A[i] - expected[i].current_A);
-      if (run_of_array && run.run->channels().size() > 1) {
-        add("array_voltage_V", r.voltage_V[i] - expected[i].voltage_V);
+    for (const LightRun::Channel& channel : run.run->channels()) {
+      auto& [squares, count] = sums[channel.name];
+      for (size_t i = 0; i < r.rows(); ++i, ++count) {
+        const double off = (r.*channel.measured)[i] - expected[i].*channel.expected;
+        squares += off * off;
       }
     }
   }
   std::map<std::string, double> result;
-  for (const auto& [channel, squares] : sum) {
-    result[channel] = std::sqrt(squares / static_cast<double>(count[channel]));
+  for (const auto& [channel, sum] : sums) {
+    result[channel] = std::sqrt(sum.first / static_cast<double>(sum.second));
   }
   return result;
 }
@@ -240,8 +248,8 @@ std::vector<Where::ChannelMisfit> misfits(const LightAnswer& answer,
   for (const FittedRun& run : runs) {
     const Eigen::VectorXd r = residuals_of(answer.trials.front(), answer.all, run);
     for (Eigen::Index i = 0; i < r.size(); ++i) {
-      auto& [chi2, count] = sums[run.run->channels()[static_cast<size_t>(
-          run.run->sample_channel()[static_cast<size_t>(i)])]];
+      const int channel = run.run->sample_channel()[static_cast<size_t>(i)];
+      auto& [chi2, count] = sums[run.run->channels()[static_cast<size_t>(channel)].name];
       chi2 += r[i] * r[i];
       ++count;
     }
@@ -259,20 +267,11 @@ std::vector<Where::ChannelMisfit> misfits(const LightAnswer& answer,
 
 Diagnosis diagnose_light(const LightLab& lab, const NominalLight& nominal,
                          std::vector<LightRecording> recordings,
-                         std::vector<LightRecording> holdouts, const LightDiagnoseOptions& asked) {
+                         std::vector<LightRecording> holdouts,
+                         const LightDiagnoseOptions& options) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
-  LightDiagnoseOptions options = asked;
-  // There is a candidate for every lamp and cell, and light is nearly linear in the effects, so few
-  // steps suffice. (Circuits are not linear: the right candidate may have a small forecast.)
-  options.limits.held_out.max_leaders = 6;
-  options.limits.leaders.max_leaders = 4;
-  options.limits.fitting.slow_blocks = 400;
-  options.limits.fitting.trial_iterations = 10;
-  options.limits.fitting.patient_iterations = 20;
-  options.limits.search.max_effects = 3;
   const std::string first = recordings.front().name;
-  LightData data =
-      read_light_data(lab, nominal, std::move(recordings), std::move(holdouts), options);
+  LightData data = read_light_data(lab, nominal, std::move(recordings), std::move(holdouts));
   require_enough(data, first);
   const LightAnswer answer = explain_light(lab, nominal, data, options);
   Diagnosis d;
@@ -281,9 +280,7 @@ Diagnosis diagnose_light(const LightLab& lab, const NominalLight& nominal,
   d.confidence = answer.decision.confidence;
   d.because = answer.decision.because;
   d.where.channels = misfits(answer, data.train);
-  std::vector<FittedRun> everything = data.train;
-  everything.insert(everything.end(), data.held.begin(), data.held.end());
-  if (d.verdict == Verdict::missing_physics) d.effects = found_light_effects(answer, everything);
+  if (d.verdict == Verdict::missing_physics) d.effects = found_light_effects(answer, data.all());
   if (d.verdict != Verdict::consistent) {
     const LightTrial& about = d.verdict == Verdict::unexplained
                                   ? answer.trials[answer.decision.best_named]

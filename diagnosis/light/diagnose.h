@@ -19,11 +19,7 @@
 namespace photorque {
 
 struct LightDiagnoseOptions {
-  int threads = 0;  // 0: all
-  // Limits per recording; longer ones are thinned to every n-th row.
-  size_t max_rows = 5000, max_scan_rows = 12000;
-  double holdout_fraction = 0.25;  // fraction of each recording, if no holdout is given
-  Thresholds limits;
+  int threads = 0;                                   // 0: all
   std::function<void(const std::string&)> progress;  // called at each step; may be empty
 };
 
@@ -41,8 +37,9 @@ std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::Vect
 // such readings strongly affect the fitted edge of a beam.)
 std::vector<size_t> rows_within_noise(const LightRun& run, const Eigen::VectorXd& residuals);
 
-// Throws InputError for recordings that the experiment cannot model: curves without an array. The
-// result is independent of the number of threads.
+// Without holdouts a quarter of each recording is held out. Throws InputError for recordings that
+// the experiment cannot model: curves without an array. The result is independent of the number of
+// threads.
 Diagnosis diagnose_light(const LightLab& lab, const NominalLight& nominal,
                          std::vector<LightRecording> recordings,
                          std::vector<LightRecording> holdouts,

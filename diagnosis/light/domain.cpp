@@ -83,27 +83,26 @@ LightStart LightDomain::profiled(const Trial& parent, size_t candidate, Start st
 
 LightTrial LightDomain::extend(const Trial& parent, size_t candidate, const Start& start,
                                const Runs& runs, const Effort& effort) const {
-  std::vector<size_t> candidates = parent.candidates;
-  candidates.push_back(candidate);
-  std::vector<std::vector<double>> x = parent.x;
-  x.push_back(profiled(parent, candidate, start, runs).x);
-  return fit_light(all_, candidates, x, parent.priors, runs, effort.max_iterations);
+  return fit_light(all_,
+                   with_candidate(parent, candidate, profiled(parent, candidate, start, runs).x),
+                   runs, effort.max_iterations);
 }
 
 LightTrial LightDomain::refit(const Trial& trial, const Runs& runs, const std::vector<Begin>&,
                               const Effort& effort) const {
-  return fit_light(all_, trial.candidates, trial.x, trial.priors, runs, effort.max_iterations);
+  return fit_light(all_, trial, runs, effort.max_iterations);
 }
 
 LightTrial LightDomain::refit_near(const Trial& trial, const Trial& other, const Runs& runs,
                                    const Effort& effort) const {
-  std::vector<std::vector<double>> x = trial.x;
+  Trial near = trial;
+  near.priors = other.priors;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const auto equal = std::ranges::find(other.candidates, trial.candidates[i]);
     if (equal == other.candidates.end()) continue;
-    x[i] = other.x[static_cast<size_t>(equal - other.candidates.begin())];
+    near.x[i] = other.x[static_cast<size_t>(equal - other.candidates.begin())];
   }
-  return fit_light(all_, trial.candidates, x, other.priors, runs, effort.max_iterations);
+  return fit_light(all_, near, runs, effort.max_iterations);
 }
 
 LightTrial LightDomain::predict(const Trial& trial, const Runs& runs) const {
@@ -117,9 +116,7 @@ std::vector<double> LightDomain::gains(const Trial& at, const std::vector<size_t
     if (traits_[c].is_linear) more.push_back({c, start_of(c)});
   }
   const inference::NormalSums sums = sums_of(at, all_, more, runs);
-  Eigen::Index fitted = static_cast<Eigen::Index>(at.priors.size());
-  for (const size_t c : at.candidates) fitted += static_cast<Eigen::Index>(all_[c].fitted());
-  const inference::Projected projected = inference::project_out(sums, fitted);
+  const inference::Projected projected = inference::project_out(sums, fitted_numbers(at, all_));
   std::vector<double> gains;
   Eigen::Index first = 0;
   for (const size_t c : candidates) {
@@ -193,26 +190,28 @@ inference::LinearProblem LightDomain::linear_problem(
 
 LightTrial LightDomain::assemble(const Trial& from, const inference::Members<Start>& members,
                                  const Runs& runs, const Effort& effort) const {
-  std::vector<size_t> candidates;
-  std::vector<std::vector<double>> predicted, plain;
+  Trial plain, predicted;
+  plain.priors = from.priors;
   for (const inference::Member<Start>& member : members) {
+    plain = with_candidate(std::move(plain), member.term.candidate, member.term.start.x);
+  }
+  predicted = plain;
+  for (size_t m = 0; m < members.size(); ++m) {
+    const inference::Member<Start>& member = members[m];
     const LightCandidate& c = all_[member.term.candidate];
-    candidates.push_back(member.term.candidate);
-    plain.push_back(member.term.start.x);
-    predicted.push_back(member.term.start.x);
     Eigen::Index k = 0;
     for (size_t n = 0; n < c.numbers.size() && member.strengths.size() > 0; ++n) {
       if (!c.numbers[n].is_strength) continue;
-      predicted.back()[n] =
+      predicted.x[m][n] =
           std::clamp(member.strengths[k++], c.numbers[n].lowest, c.numbers[n].highest);
     }
   }
   // The fit starts from the forecast and, if the result is worse than before, from the present
   // values: from a forecast far off it may diverge.
-  Trial trial = fit_light(all_, candidates, predicted, from.priors, runs, effort.max_iterations);
+  Trial trial = fit_light(all_, predicted, runs, effort.max_iterations);
   const bool is_worse = !(trial.fit.chi2 < from.fit.chi2);
-  if (is_worse && predicted != plain) {
-    Trial other = fit_light(all_, candidates, plain, from.priors, runs, effort.max_iterations);
+  if (is_worse && predicted.x != plain.x) {
+    Trial other = fit_light(all_, plain, runs, effort.max_iterations);
     if (other.log_evidence > trial.log_evidence) trial = std::move(other);
   }
   return trial;

@@ -13,12 +13,25 @@ namespace {
 
 using Basis = std::function<double(const SampleConditions&)>;
 
-LightCandidate light_law(const std::string& variable, const std::string& label,
-                         std::vector<Basis> basis) {
+LightCandidate empirical_law(const std::string& variable, const std::string& label) {
   LightCandidate c;
   c.variable = variable;
-  c.label = label;
-  c.kind.name = label;
+  c.label = c.kind.name = label;
+  return c;
+}
+
+// The light times 1 + a cos φ + b sin φ.
+template <class Phase>
+void add_wave(LightState& state, double a, double b, const Phase& phase_of) {
+  state.light_laws.emplace_back([a, b, phase_of](const SampleConditions& at) {
+    const double phase = phase_of(at);
+    return 1.0 + a * std::cos(phase) + b * std::sin(phase);
+  });
+}
+
+LightCandidate light_law(const std::string& variable, const std::string& label,
+                         std::vector<Basis> basis) {
+  LightCandidate c = empirical_law(variable, label);
   c.kind.parameters = {{.key = "strength", .count = basis.size(), .scale = 0.05}};
   c.kind.act = [basis = std::move(basis)](LightState& state, size_t, std::span<const double> x) {
     std::vector<double> strengths(x.begin(), x.end());
@@ -50,37 +63,27 @@ LightCandidate over_the_receiver(int most) {
 // A wave over the receiver in any direction, in cycles over half of its width and half of its
 // height.
 LightCandidate ripple() {
-  LightCandidate c;
-  c.variable = "position";
-  c.label = c.kind.name = "unknown in position (ripple)";
-  c.kind.parameters = {{.key = "strength", .count = 2, .scale = 0.05},
-                       {.key = "waves_u",
-                        .scale = 1.0,
-                        .lowest = -40.0,
-                        .highest = 40.0,
-                        .is_strength = false,
-                        .step = 0.01},
-                       {.key = "waves_v",
-                        .scale = 1.0,
-                        .lowest = -40.0,
-                        .highest = 40.0,
-                        .is_strength = false,
-                        .step = 0.01}};
+  LightCandidate c = empirical_law("position", "unknown in position (ripple)");
+  EffectParameter waves = {.key = "waves_u",
+                           .scale = 1.0,
+                           .lowest = -40.0,
+                           .highest = 40.0,
+                           .is_strength = false,
+                           .step = 0.01};
+  c.kind.parameters = {{.key = "strength", .count = 2, .scale = 0.05}, waves};
+  waves.key = "waves_v";
+  c.kind.parameters.push_back(waves);
   c.kind.scan = LightEffectKind::Scan::wave;
   c.kind.act = [](LightState& state, size_t, std::span<const double> x) {
-    state.light_laws.emplace_back(
-        [a = x[0], b = x[1], u = x[2], v = x[3]](const SampleConditions& at) {
-          const double phase = pi * (u * at.u + v * at.v);
-          return 1.0 + a * std::cos(phase) + b * std::sin(phase);
-        });
+    add_wave(state, x[0], x[1], [u = x[2], v = x[3]](const SampleConditions& at) {
+      return pi * (u * at.u + v * at.v);
+    });
   };
   return c;
 }
 
 LightCandidate flicker(double longest_s) {
-  LightCandidate c;
-  c.variable = "time";
-  c.label = c.kind.name = "unknown in time (periodic)";
+  LightCandidate c = empirical_law("time", "unknown in time (periodic)");
   c.kind.parameters = {{.key = "strength", .count = 2, .scale = 0.05},
                        {.key = "periods",
                         .scale = 1.0,
@@ -92,19 +95,15 @@ LightCandidate flicker(double longest_s) {
     c.kind.parameters[1].starts.push_back(n);
   }
   c.kind.act = [longest_s](LightState& state, size_t, std::span<const double> x) {
-    state.light_laws.emplace_back(
-        [a = x[0], b = x[1], n = x[2], longest_s](const SampleConditions& at) {
-          const double phase = 2.0 * pi * n * at.time_s / longest_s;
-          return 1.0 + a * std::cos(phase) + b * std::sin(phase);
-        });
+    add_wave(state, x[0], x[1], [n = x[2], longest_s](const SampleConditions& at) {
+      return 2.0 * pi * n * at.time_s / longest_s;
+    });
   };
   return c;
 }
 
 LightCandidate current_over_voltage() {
-  LightCandidate c;
-  c.variable = "voltage";
-  c.label = c.kind.name = "unknown in voltage";
+  LightCandidate c = empirical_law("voltage", "unknown in voltage");
   c.kind.parameters = {{.key = "strength", .count = 5, .scale = 0.05}};
   c.kind.in_circuit = true;
   c.kind.act = [](LightState& state, size_t, std::span<const double> x) {

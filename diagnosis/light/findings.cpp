@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "core/numerics/linear.h"
 #include "core/settings/settings.h"
 
 namespace photorque {
@@ -88,11 +87,10 @@ ShadedRegion shaded_region(const LightTrial& trial, const LightCandidates& all, 
 
 void add_shadow(const LightTrial& trial, const LightCandidates& all, size_t which,
                 const std::vector<FittedRun>& runs, FoundEffect& effect) {
-  const FittedRun* scan = nullptr;
-  for (const FittedRun& run : runs) {
-    if (run.run->recording().kind == LightRecording::Kind::scan && scan == nullptr) scan = &run;
-  }
-  if (scan == nullptr) return;
+  const auto scan = std::ranges::find_if(runs, [](const FittedRun& run) {
+    return run.run->recording().kind == LightRecording::Kind::scan;
+  });
+  if (scan == runs.end()) return;
   const ShadedRegion region = shaded_region(trial, all, which, *scan);
   effect.parameters.push_back({"u_m", {region.u_low, region.u_high}, {}});
   effect.parameters.push_back({"v_m", {region.v_low, region.v_high}, {}});
@@ -109,8 +107,7 @@ FoundEffect found_light_effect(const LightTrial& trial, const LightCandidates& a
   effect.explanation = c.kind.explanation;
   if (c.kind.index == LightEffectKind::Index::wall) {
     effect.texts.emplace_back("node", all.lab->walls()[c.index].node);
-  } else if (c.kind.index != LightEffectKind::Index::none &&
-             c.kind.index != LightEffectKind::Index::frame) {
+  } else if (c.kind.is_numbered()) {
     effect.parameters.push_back({"index", {static_cast<double>(c.index)}, {}});
   }
   if (is_dark(trial, all, which)) {
@@ -200,31 +197,25 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
                                                  const std::vector<FittedRun>& runs) {
   std::map<std::string, double> strength;
   double chi2 = 0.0, samples = 0.0;
-  std::vector<Eigen::VectorXd> residuals;
   for (const FittedRun& run : runs) {
-    residuals.push_back(residuals_of(about, all, run));
-    chi2 += residuals.back().squaredNorm();
-    samples += static_cast<double>(residuals.back().size());
+    const Eigen::VectorXd residuals = residuals_of(about, all, run);
+    chi2 += residuals.squaredNorm();
+    samples += static_cast<double>(residuals.size());
   }
   const double beyond = std::max(1.0, chi2 - samples);
   for (size_t i = 0; i < all.list.size(); ++i) {
     const LightCandidate& c = all[i];
     if (!c.is_empirical() || !c.is_linear()) continue;
-    Eigen::MatrixXd H;
-    Eigen::VectorXd g;
+    const auto n = static_cast<Eigen::Index>(c.fitted());
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
     for (const FittedRun& run : runs) {
       const LightSlopes s = slopes_of(about, all, {{i, {c.start()}}}, run);
-      const auto n = static_cast<Eigen::Index>(c.fitted());
       const Eigen::MatrixXd J = s.slopes.rightCols(n);
-      if (H.size() == 0) {
-        H = Eigen::MatrixXd::Zero(n, n);
-        g = Eigen::VectorXd::Zero(n);
-      }
       H += J.transpose() * J;
       g += J.transpose() * s.residuals;
     }
-    H.diagonal() *= 1.0 + 1e-9;
-    const double gain = g.dot(solve_symmetric(H, g).col(0)) - static_cast<double>(g.size());
+    const double gain = linear_gain(H, g) - static_cast<double>(g.size());
     if (std::isfinite(gain)) {
       strength[c.variable] = std::max(strength[c.variable], std::clamp(gain / beyond, 0.0, 1.0));
     }

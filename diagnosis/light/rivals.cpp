@@ -22,8 +22,7 @@ Eigen::VectorXd distinct_chi2(const LightTrial& about, const LightCandidates& al
     const Eigen::MatrixXd square = s.slopes.transpose() * s.slopes;
     H = H.size() == 0 ? square : Eigen::MatrixXd(H + square);
   }
-  Eigen::Index fitted = static_cast<Eigen::Index>(about.priors.size());
-  for (const size_t c : about.candidates) fitted += static_cast<Eigen::Index>(all[c].fitted());
+  const Eigen::Index fitted = fitted_numbers(about, all);
   if (fitted > 0) {
     const Eigen::MatrixXd inner = H.topLeftCorner(fitted, fitted),
                           cross = H.bottomLeftCorner(H.rows() - fitted, fitted);
@@ -46,10 +45,7 @@ Eigen::VectorXd distinct_chi2(const LightTrial& about, const LightCandidates& al
         std::ranges::count_if(c.numbers, [](const auto& number) { return number.is_strength; }));
     left[static_cast<Eigen::Index>(t)] = left[0];
     if (n > 0 && own > 0) {
-      Eigen::MatrixXd S = H.block(at, at, n, n);
-      S.diagonal() *= 1.0 + 1e-9;
-      const Eigen::VectorXd shared = H.block(at, 0, n, own) * theta;
-      const double taken = shared.dot(solve_symmetric(S, shared).col(0));
+      const double taken = linear_gain(H.block(at, at, n, n), H.block(at, 0, n, own) * theta);
       if (std::isfinite(taken)) left[static_cast<Eigen::Index>(t)] -= taken;
     }
     at += n;
@@ -63,7 +59,7 @@ Eigen::VectorXd distinct_chi2_of_switch(const LightTrial& own, const LightTrial&
                                         const LightCandidates& all,
                                         const std::vector<size_t>& others,
                                         const std::vector<FittedRun>& runs) {
-  const LightTrial bare = fit_light(all, without.candidates, without.x, without.priors, runs, 25);
+  const LightTrial bare = fit_light(all, without, runs, 25);
   const std::vector<double> gains = LightDomain(all).gains(bare, others, runs);
   const double whole = bare.fit.chi2 - own.fit.chi2;
   Eigen::VectorXd left(static_cast<Eigen::Index>(others.size()) + 1);
@@ -82,20 +78,17 @@ std::vector<inference::Checks::Place> other_light_places(const LightTrial& trial
                                                          int threads) {
   const LightCandidate& named = all[trial.candidates[which]];
   std::vector<inference::Checks::Place> places;
-  const bool has_place = named.kind.index != LightEffectKind::Index::none &&
-                         named.kind.index != LightEffectKind::Index::frame;
-  if (!has_place) return places;
+  if (!named.kind.is_numbered()) return places;
   for (size_t i = 0; i < all.list.size(); ++i) {
     const bool is_free = std::ranges::find(trial.candidates, i) == trial.candidates.end();
     if (is_free && all[i].kind.name == named.kind.name) places.emplace_back(i, 0.0);
   }
   constexpr int iterations = 12;
-  const LightTrial own = fit_light(all, trial.candidates, trial.x, trial.priors, runs, iterations);
+  const LightTrial own = fit_light(all, trial, runs, iterations);
   parallel_for(places.size(), threads, [&](size_t k) {
-    std::vector<size_t> candidates = trial.candidates;
-    candidates[which] = places[k].first;
-    const LightTrial there = fit_light(all, candidates, trial.x, trial.priors, runs, iterations);
-    places[k].second = own.log_evidence - there.log_evidence;
+    LightTrial there = trial;
+    there.candidates[which] = places[k].first;
+    places[k].second = own.log_evidence - fit_light(all, there, runs, iterations).log_evidence;
   });
   return places;
 }
@@ -104,11 +97,9 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
                                       const std::vector<FittedRun>& runs) {
   const LightTrial& chosen = answer.chosen();
   const LightCandidates& all = answer.all;
-  LightTrial without = chosen;
-  without.candidates.erase(without.candidates.begin() + static_cast<std::ptrdiff_t>(which));
-  without.x.erase(without.x.begin() + static_cast<std::ptrdiff_t>(which));
+  const LightTrial without = without_candidate(chosen, which);
   const double within = all.limits.search.min_log_evidence_gain;
-  const LightTrial own = fit_light(all, chosen.candidates, chosen.x, chosen.priors, runs, 25);
+  const LightTrial own = fit_light(all, chosen, runs, 25);
   const LightCandidate& named = all[chosen.candidates[which]];
   std::vector<size_t> others;
   std::vector<inference::Term<LightStart>> terms = {{chosen.candidates[which], {chosen.x[which]}}};
@@ -131,11 +122,8 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
     const double gain = left[0];
     if (left[static_cast<Eigen::Index>(k) + 1] > beyond * within + of_all * gain) continue;
     if (rivals.contains(c.kind.name)) continue;
-    std::vector<size_t> candidates = without.candidates;
-    candidates.push_back(others[k]);
-    std::vector<std::vector<double>> x = without.x;
-    x.push_back(c.start());
-    const LightTrial rival = fit_light(all, candidates, x, chosen.priors, runs, 25);
+    const LightTrial rival =
+        fit_light(all, with_candidate(without, others[k], c.start()), runs, 25);
     if (rival.log_evidence > own.log_evidence - within) rivals.insert(c.kind.name);
   }
   // Adds the candidates that explain the recordings equally well in its place.

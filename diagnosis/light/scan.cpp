@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
-#include "core/numerics/linear.h"
 #include "core/numerics/order.h"
 #include "core/parallel.h"
 
@@ -68,8 +68,7 @@ double gain_alone(const LightCandidate& c, const std::vector<double>& start,
     H += J.transpose() * J;
     g += J.transpose() * l.residuals;
   }
-  H.diagonal().array() *= 1.0 + 1e-9;
-  const double gain = g.dot(solve_symmetric(H, g).col(0));
+  const double gain = linear_gain(H, g);
   return std::isfinite(gain) ? gain : 0.0;
 }
 
@@ -125,11 +124,8 @@ std::vector<double> trapped_interval(const LightTrial& parent, const LightCandid
                                      const std::vector<FittedRun>& runs) {
   // The interval with the largest sum of gains (J. Bentley, Communications of the ACM 27, 865
   // (1984)).
-  const LightState state = [&] {
-    LightState s = state_of(parent, all);
-    s.trapped.clear();
-    return s;
-  }();
+  LightState state = state_of(parent, all);
+  state.trapped.clear();
   double best = 0.0;
   std::vector<double> interval = {0.0, -1.0, 0.0};
   for (const FittedRun& run : runs) {
@@ -169,29 +165,24 @@ std::vector<std::vector<double>> in_order_of_place(const LightRun& run,
   const SurfaceGrid& g = run.lab().grid();
   const double area = (g.u_high - g.u_low) * (g.v_high - g.v_low);
   // A block contains about twenty places per attitude.
-  size_t attitudes = 1;
+  std::vector<size_t> attitude(r.rows(), 0);
   for (size_t i = 1; i < r.rows(); ++i) {
-    if (r.lab_from_body[i].coeffs() != r.lab_from_body[i - 1].coeffs()) ++attitudes;
+    const bool is_new = r.lab_from_body[i].coeffs() != r.lab_from_body[i - 1].coeffs();
+    attitude[i] = attitude[i - 1] + (is_new ? 1 : 0);
   }
   constexpr double places_of_a_block = 20.0;
-  const double side = std::sqrt(places_of_a_block * area * static_cast<double>(attitudes) /
-                                static_cast<double>(r.rows()));
-  struct Place {
-    size_t attitude;
-    int block_v, block_u;
-    size_t row;
-    auto key() const { return std::tuple(attitude, block_v, block_u, row); }
-  };
-  std::vector<Place> places;
-  size_t attitude = 0;
+  const double side =
+      std::sqrt(places_of_a_block * area * static_cast<double>(attitude.back() + 1) /
+                static_cast<double>(r.rows()));
+  // Attitude, block along v, block along u, row.
+  std::vector<std::tuple<size_t, int, int, size_t>> places;
   for (size_t i = 0; i < r.rows(); ++i) {
-    if (i > 0 && r.lab_from_body[i].coeffs() != r.lab_from_body[i - 1].coeffs()) ++attitude;
-    places.push_back({attitude, static_cast<int>(std::floor((r.v_m[i] - g.v_low) / side)),
-                      static_cast<int>(std::floor((r.u_m[i] - g.u_low) / side)), i});
+    places.emplace_back(attitude[i], static_cast<int>(std::floor((r.v_m[i] - g.v_low) / side)),
+                        static_cast<int>(std::floor((r.u_m[i] - g.u_low) / side)), i);
   }
-  std::ranges::sort(places, [](const Place& a, const Place& b) { return a.key() < b.key(); });
-  for (const Place& p : places) {
-    ordered[0].push_back(residuals[static_cast<Eigen::Index>(p.row)]);
+  std::ranges::sort(places);
+  for (const auto& place : places) {
+    ordered[0].push_back(residuals[static_cast<Eigen::Index>(std::get<3>(place))]);
   }
   return ordered;
 }

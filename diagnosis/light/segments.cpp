@@ -41,13 +41,11 @@ class Segments {
     });
   }
 
-  std::vector<double> chi2(const std::vector<size_t>& candidates,
-                           const std::vector<std::vector<double>>& x,
-                           const std::vector<double>& priors) const {
+  std::vector<double> chi2(const LightTrial& trial) const {
     std::vector<double> result(count_, 0.0);
     parallel_for(folds, threads_, [&](size_t fold) {
-      const LightTrial others = fit_light(all_, candidates, x, priors, fitted_[fold],
-                                          all_.limits.fitting.brief_iterations);
+      const LightTrial others =
+          fit_light(all_, trial, fitted_[fold], all_.limits.fitting.brief_iterations);
       for (size_t r = 0; r < runs_.size(); ++r) {
         const Eigen::VectorXd left = residuals_of(others, all_, runs_[r]);
         const size_t of_a_row = runs_[r].run->samples() / runs_[r].run->rows();
@@ -79,12 +77,8 @@ std::optional<double> gain_over_segments(const LightTrial& trial, size_t which,
     if (run.run->rows() < 2 * all.limits.discrepancy.segments) return std::nullopt;
   }
   const Segments segments(all, runs, threads);
-  std::vector<size_t> candidates = trial.candidates;
-  std::vector<std::vector<double>> x = trial.x;
-  const std::vector<double> with = segments.chi2(candidates, x, trial.priors);
-  candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(which));
-  x.erase(x.begin() + static_cast<std::ptrdiff_t>(which));
-  return inference::gain_sigma(segments.chi2(candidates, x, trial.priors), with);
+  return inference::gain_sigma(segments.chi2(without_candidate(trial, which)),
+                               segments.chi2(trial));
 }
 
 }  // namespace photorque

@@ -51,10 +51,11 @@ std::optional<Tilt> tilt_of_light(const Diagnosis& light) {
 
 // The tilt determined by the motion: a refined prior or a found effect.
 std::optional<Tilt> tilt_of_motion(const Diagnosis& motion) {
-  const auto tilt_in = [](const std::vector<FittedParameter>& all,
-                          const auto& is_it) -> std::optional<Tilt> {
+  // `tilt_key`, or the key of a prior that ends in it.
+  const auto tilt_in = [](const std::vector<FittedParameter>& all) -> std::optional<Tilt> {
     for (const FittedParameter& p : all) {
-      if (!is_it(p.key) || p.value.size() != 2 || p.sigma.size() != 2) continue;
+      const bool is_tilt = p.key == tilt_key || p.key.ends_with(std::string("].") + tilt_key);
+      if (!is_tilt || p.value.size() != 2 || p.sigma.size() != 2) continue;
       if (!(p.sigma[0] > 0.0 && p.sigma[1] > 0.0)) continue;
       return Tilt{-Vec2(p.value[0], p.value[1]), Vec2(p.sigma[0], p.sigma[1])};
     }
@@ -63,11 +64,9 @@ std::optional<Tilt> tilt_of_motion(const Diagnosis& motion) {
   if (motion.verdict == Verdict::unexplained) return std::nullopt;
   for (const FoundEffect& effect : motion.effects) {
     if (effect.kind != of_motion) continue;
-    return tilt_in(effect.parameters, [](const std::string& key) { return key == tilt_key; });
+    return tilt_in(effect.parameters);
   }
-  return tilt_in(motion.priors_refined, [](const std::string& key) {
-    return key.ends_with(std::string("].") + tilt_key);
-  });
+  return tilt_in(motion.priors_refined);
 }
 
 bool names_tilt(const Diagnosis& motion) {

@@ -248,13 +248,35 @@ std::vector<Eigen::Index> columns_of(const LightTrial& trial, const LightCandida
   return columns;
 }
 
-LightTrial fit_light(const LightCandidates& all, const std::vector<size_t>& candidates,
-                     const Numbers& x, const std::vector<double>& priors,
+LightTrial with_candidate(LightTrial trial, size_t candidate, const std::vector<double>& x) {
+  trial.candidates.push_back(candidate);
+  trial.x.push_back(x);
+  return trial;
+}
+
+LightTrial without_candidate(LightTrial trial, size_t which) {
+  trial.candidates.erase(trial.candidates.begin() + static_cast<std::ptrdiff_t>(which));
+  trial.x.erase(trial.x.begin() + static_cast<std::ptrdiff_t>(which));
+  return trial;
+}
+
+double linear_gain(Eigen::MatrixXd H, const Eigen::VectorXd& g) {
+  H.diagonal() *= 1.0 + 1e-9;
+  return g.dot(solve_symmetric(H, g).col(0));
+}
+
+Eigen::Index fitted_numbers(const LightTrial& trial, const LightCandidates& all) {
+  return static_cast<Eigen::Index>(trial.priors.size() + places_of(all, trial.candidates).size());
+}
+
+LightTrial fit_light(const LightCandidates& all, const LightTrial& start,
                      const std::vector<FittedRun>& runs, int max_iterations) {
+  const std::vector<size_t>& candidates = start.candidates;
+  const std::vector<double>& priors = start.priors;
   const std::vector<Place> places = places_of(all, candidates);
   const auto n_priors = static_cast<Eigen::Index>(priors.size());
   const auto numbers_at = [&](const Eigen::VectorXd& values) {
-    Numbers at = x;
+    Numbers at = start.x;
     for (size_t k = 0; k < places.size(); ++k) {
       at[places[k].member][places[k].number] = values[n_priors + static_cast<Eigen::Index>(k)];
     }
@@ -277,7 +299,7 @@ LightTrial fit_light(const LightCandidates& all, const std::vector<size_t>& cand
   };
   inference::Parameters parameters;
   parameters.of_run.resize(runs.size());
-  parameters.shared = parameters_of(all, candidates, x, priors);
+  parameters.shared = parameters_of(all, candidates, start.x, priors);
   const inference::ResidualModel model(parameters, residuals);
   inference::Options options;
   options.max_iterations = max_iterations;
@@ -291,7 +313,9 @@ LightTrial fit_light(const LightCandidates& all, const std::vector<size_t>& cand
 }
 
 LightTrial nominal_light_trial(const LightCandidates& all, const std::vector<FittedRun>& runs) {
-  return fit_light(all, {}, {}, std::vector<double>(all.nominal.uncertain.size(), 0.0), runs, 25);
+  LightTrial start;
+  start.priors.assign(all.nominal.uncertain.size(), 0.0);
+  return fit_light(all, start, runs, 25);
 }
 
 Eigen::VectorXd residuals_of(const LightTrial& trial, const LightCandidates& all,
@@ -338,13 +362,11 @@ LightSlopes slopes_of(const LightTrial& trial, const LightCandidates& all,
     for (size_t k = 0; k < start.size(); ++k) {
       if (c.numbers[k].is_strength) start[k] = 0.0;
     }
-    std::vector<size_t> candidates = trial.candidates;
-    candidates.push_back(term.candidate);
-    Numbers x = trial.x;
-    x.push_back(start);
+    const LightTrial with = with_candidate(trial, term.candidate, start);
     for (size_t k = 0; k < c.numbers.size(); ++k) {
       if (!c.numbers[k].is_strength) continue;
-      columns.push_back(slope_by(all, candidates, x, {candidates.size() - 1, k}, run, at));
+      columns.push_back(
+          slope_by(all, with.candidates, with.x, {trial.candidates.size(), k}, run, at));
     }
   }
   result.slopes.resize(result.residuals.size(),

@@ -28,10 +28,14 @@ LightState state_of(const LightTrial& trial, const LightCandidates& all);
 // The trial without candidates.
 LightTrial nominal_light_trial(const LightCandidates& all, const std::vector<FittedRun>& runs);
 
-// Fits candidates with the priors, starting from the numbers `x`.
-LightTrial fit_light(const LightCandidates& all, const std::vector<size_t>& candidates,
-                     const std::vector<std::vector<double>>& x, const std::vector<double>& priors,
+// Fits the candidates of `start` with the priors, starting from its numbers.
+LightTrial fit_light(const LightCandidates& all, const LightTrial& start,
                      const std::vector<FittedRun>& runs, int max_iterations);
+
+// The trial with one more candidate that has the numbers `x`, or without its candidate `which`; not
+// fitted.
+LightTrial with_candidate(LightTrial trial, size_t candidate, const std::vector<double>& x);
+LightTrial without_candidate(LightTrial trial, size_t which);
 
 // Predicts other recordings with the trial's numbers without a fit.
 LightTrial predict_light(const LightTrial& trial, const LightCandidates& all,
@@ -49,6 +53,12 @@ struct LightSlopes {
 };
 LightSlopes slopes_of(const LightTrial& trial, const LightCandidates& all,
                       const std::vector<inference::Term<LightStart>>& more, const FittedRun& run);
+
+// Fall of χ² by a linear fit with the normal matrix H and the gradient g.
+double linear_gain(Eigen::MatrixXd H, const Eigen::VectorXd& g);
+
+// Number of all fitted numbers of a trial: the priors, then those of its candidates.
+Eigen::Index fitted_numbers(const LightTrial& trial, const LightCandidates& all);
 
 // Columns of a trial's candidate among all fitted numbers.
 std::vector<Eigen::Index> columns_of(const LightTrial& trial, const LightCandidates& all,

@@ -12,6 +12,8 @@
 namespace photorque {
 namespace {
 
+using Numbers = std::span<const double>;
+
 // Loss of light at 45° by Fresnel's law, in addition to the loss at normal incidence.
 double slant_loss(double index) {
   CellFront front;
@@ -29,6 +31,45 @@ double index_of(double x) {
 }
 
 }  // namespace
+
+EffectParameter remaining_fraction(const std::string& meaning, double scale,
+                                   const std::vector<double>& starts) {
+  return {.key = "factor",
+          .meaning = meaning,
+          .neutral = 1.0,
+          .scale = scale,
+          .lowest = -1.0,
+          .highest = 0.0,
+          .starts = starts};
+}
+
+EffectParameter gain_factor(const std::string& meaning) {
+  return {.key = "factor",
+          .meaning = meaning,
+          .neutral = 1.0,
+          .scale = 0.1,
+          .lowest = -0.95,
+          .highest = 4.0};
+}
+
+EffectParameter from_zero(const std::string& key, const std::string& meaning, double scale,
+                          double highest) {
+  return {.key = key, .meaning = meaning, .scale = scale, .lowest = 0.0, .highest = highest};
+}
+
+LightEffectKind::Act multiplies(double LightState::*factor) {
+  return [factor](LightState& state, size_t, Numbers x) { state.*factor *= 1.0 + x[0]; };
+}
+
+LightEffectKind::Act multiplies_one(std::vector<double> LightState::*factors) {
+  return [factors](LightState& state, size_t index, Numbers x) {
+    (state.*factors)[index] *= 1.0 + x[0];
+  };
+}
+
+LightEffectKind::Act adds_to(double LightState::*term) {
+  return [term](LightState& state, size_t, Numbers x) { state.*term += x[0]; };
+}
 
 double value_of(const EffectParameter& parameter, double x) {
   switch (parameter.form) {
@@ -63,7 +104,6 @@ double slope_of(const EffectParameter& parameter, double x) {
 }
 
 double x_of(const EffectParameter& parameter, double value) {
-  const double off = value - parameter.neutral;
   switch (parameter.form) {
     case EffectParameter::Form::reciprocal:
       return std::isinf(value) ? 0.0 : 1.0 / value;
@@ -74,7 +114,7 @@ double x_of(const EffectParameter& parameter, double value) {
     case EffectParameter::Form::offset:
       break;
   }
-  return off;
+  return value - parameter.neutral;
 }
 
 std::string range_of(const EffectParameter& parameter) {

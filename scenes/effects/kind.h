@@ -48,6 +48,8 @@ struct LightEffectKind {
   // Object to which `index` refers. `frame`: 0 fixed in the lab, 1 fixed on the body.
   enum class Index { none, lamp, cell, string, bypass, wall, frame };
   Index index = Index::none;
+  // Whether the effect acts on one of several equal objects.
+  bool is_numbered() const { return index != Index::none && index != Index::frame; }
   std::vector<EffectParameter> parameters;
   // Types of recordings that show the effect.
   bool in_scans = true, in_sweeps = true, in_runs = true;
@@ -59,8 +61,22 @@ struct LightEffectKind {
   enum class Scan { none, shadow, trapped, wave };
   Scan scan = Scan::none;
   // Writes x into the state; `x` contains the numbers of all parameters in order.
-  std::function<void(LightState& state, size_t index, std::span<const double> x)> act;
+  using Act = std::function<void(LightState& state, size_t index, std::span<const double> x)>;
+  Act act;
 };
+
+// Frequent parameters of the families. `factor` from 0 to 1, and from 0.05 to 5; 1 has no effect.
+EffectParameter remaining_fraction(const std::string& meaning, double scale,
+                                   const std::vector<double>& starts = {});
+EffectParameter gain_factor(const std::string& meaning);
+// From 0, which has no effect, to `highest`.
+EffectParameter from_zero(const std::string& key, const std::string& meaning, double scale,
+                          double highest);
+
+// Effects with one parameter x: multiply a factor of the state by 1 + x, or add x to a term.
+LightEffectKind::Act multiplies(double LightState::*factor);
+LightEffectKind::Act multiplies_one(std::vector<double> LightState::*factors);
+LightEffectKind::Act adds_to(double LightState::*term);
 
 // Value of a key from x, in SI units, and its derivative with respect to x.
 double value_of(const EffectParameter& parameter, double x);

@@ -98,6 +98,26 @@ size_t LightParts::bypasses() const {
   return count;
 }
 
+size_t LightParts::count_of(LightEffectKind::Index index) const {
+  switch (index) {
+    case LightEffectKind::Index::none:
+      return 1;
+    case LightEffectKind::Index::lamp:
+      return lamps;
+    case LightEffectKind::Index::cell:
+      return cells();
+    case LightEffectKind::Index::string:
+      return strings();
+    case LightEffectKind::Index::bypass:
+      return bypasses();
+    case LightEffectKind::Index::wall:
+      return walls.size();
+    case LightEffectKind::Index::frame:
+      return 2;
+  }
+  return 0;
+}
+
 LightParts light_parts(const Experiment& experiment) {
   LightParts parts;
   find_receiver(experiment, parts);

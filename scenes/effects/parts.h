@@ -8,7 +8,7 @@
 
 #include "photovoltaics/array/design.h"
 #include "receivers/surface_grid.h"
-#include "scenes/effects/state.h"
+#include "scenes/effects/kind.h"
 #include "scenes/experiment/experiment.h"
 
 namespace photorque {
@@ -38,6 +38,8 @@ struct LightParts {
   size_t cells() const { return design ? static_cast<size_t>(design->cells()) : 0; }
   size_t strings() const { return design ? design->wiring.strings.size() : 0; }
   size_t bypasses() const;
+  // Number of objects or frames of this kind; 1 for none.
+  size_t count_of(LightEffectKind::Index index) const;
   // State without effects.
   LightState nominal() const { return {lamps, cells(), strings(), bypasses()}; }
 };

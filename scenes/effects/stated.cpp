@@ -6,6 +6,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "core/text/format.h"
 #include "scenes/effects/kind.h"
 #include "sources/lamps/kind.h"
@@ -14,36 +15,20 @@ namespace photorque {
 namespace {
 
 size_t index_of(const Settings& effect, const LightEffectKind& kind, const LightParts& parts) {
-  size_t count = 0;
-  switch (kind.index) {
-    case LightEffectKind::Index::none:
-      return 0;
-    case LightEffectKind::Index::lamp:
-      count = parts.lamps;
-      break;
-    case LightEffectKind::Index::cell:
-      count = parts.cells();
-      break;
-    case LightEffectKind::Index::string:
-      count = parts.strings();
-      break;
-    case LightEffectKind::Index::bypass:
-      count = parts.bypasses();
-      break;
-    case LightEffectKind::Index::frame:
-      return effect.choice_or("axes", {"lab", "body"}, 0);
-    case LightEffectKind::Index::wall: {
-      const std::string node = effect.text("node");
-      std::set<std::string> nodes;
-      for (size_t w = 0; w < parts.walls.size(); ++w) {
-        if (parts.walls[w].node == node) return w;
-        nodes.insert(parts.walls[w].node);
-      }
-      throw effect.error(
-          "node", "\"" + node + "\"",
-          "a node of the scene other than the receiver: " + listed_names(nodes, node));
+  using Index = LightEffectKind::Index;
+  if (kind.index == Index::none) return 0;
+  if (kind.index == Index::frame) return effect.choice_or("axes", {"lab", "body"}, 0);
+  if (kind.index == Index::wall) {
+    const std::string node = effect.text("node");
+    std::set<std::string> nodes;
+    for (size_t w = 0; w < parts.walls.size(); ++w) {
+      if (parts.walls[w].node == node) return w;
+      nodes.insert(parts.walls[w].node);
     }
+    throw effect.error("node", "\"" + node + "\"",
+                       "a node of the scene other than the receiver: " + listed_names(nodes, node));
   }
+  const size_t count = parts.count_of(kind.index);
   if (count == 0) {
     throw effect.error(
         "kind", "\"" + kind.name + "\"",
@@ -118,6 +103,34 @@ std::vector<std::string> notices_of(const Experiment& experiment,
   return notices;
 }
 
+constexpr int64_t most_objects = 1'000'000'000;
+
+Key key_of(const EffectParameter& parameter) {
+  // Two kinds may have a key of equal name but with different ranges, so the meaning contains the
+  // range.
+  const std::string range = range_of(parameter);
+  const std::string meaning = parameter.meaning + (range.empty() ? "" : ", " + range);
+  if (parameter.count > 1) {
+    return NumbersKey(parameter.key, {}, meaning, {.size = parameter.count});
+  }
+  return NumberKey(parameter.key, Range{}, meaning);
+}
+
+std::vector<Key> place_keys(LightEffectKind::Index index) {
+  using Index = LightEffectKind::Index;
+  if (index == Index::none) return {};
+  if (index == Index::wall) return {TextKey("node", "node of the wall in the scene")};
+  if (index == Index::frame) {
+    return {Key::choice_or("axes", words({"lab", "body"}), 0, "axes to which the object is fixed")};
+  }
+  const char* const number =
+      index == Index::lamp ? "number of the LED, from 0, over all sources in the order of the file"
+      : index == Index::cell   ? "number of the cell: row · columns + column, from 0"
+      : index == Index::string ? "number of the string along the serpentine, from 0"
+                               : "number of the bypass diode along the serpentine, from 0";
+  return {IntegerKey("index", 0, most_objects, number, {.varies = true})};
+}
+
 std::vector<Beam> beams_under(const Experiment& experiment, const LightState& state) {
   std::vector<Beam> beams;
   const std::vector<Beam> all = beams_with_divergence(experiment, state.divergence);
@@ -140,6 +153,20 @@ std::vector<Beam> beams_under(const Experiment& experiment, const LightState& st
 }
 
 }  // namespace
+
+std::vector<Key::Choice> light_effects() {
+  std::vector<Key::Choice> all;
+  for (const LightEffectKind& kind : all_light_effect_kinds()) {
+    std::vector<Key> keys = place_keys(kind.index);
+    for (const EffectParameter& parameter : kind.parameters) keys.push_back(key_of(parameter));
+    add_choice(all, {kind.name, kind.explanation, std::move(keys)});
+    // A failed LED gives no light at all, so it has no strength.
+    if (kind.name == "led_derated") {
+      all.push_back({"led_failed", "an LED gives no light", place_keys(kind.index)});
+    }
+  }
+  return all;
+}
 
 std::vector<Beam> beams_with_divergence(const Experiment& experiment, double scale) {
   if (scale == 1.0) return experiment.beams;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/settings/keys.h"
 #include "scenes/effects/parts.h"
 
 namespace photorque {
@@ -22,6 +23,10 @@ LightState stated_effects(const Experiment& experiment, const LightParts& parts)
 // each effect that a trace does not include: it acts on instruments or on the circuit of the array,
 // or it is not supported in traces. Throws InputError like light_parts() and stated_effects().
 std::vector<std::string> apply_stated_effects(Experiment& experiment);
+
+// The kinds of [[effect]] on light and power with their keys. Kinds with equal names form one
+// choice with the keys of all.
+std::vector<Key::Choice> light_effects();
 
 // The experiment's beams with their angular widths multiplied by `scale` > 0.
 std::vector<Beam> beams_with_divergence(const Experiment& experiment, double scale);

@@ -11,22 +11,15 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
       // Uniform over the receiver and all attitudes.
       {.name = "ambient_light",
        .explanation = "light of the room is added to that of the lamps",
-       .parameters = {{.key = "irradiance_W_m2",
-                       .meaning = "irradiance of the light of the room",
-                       .scale = 20.0,
-                       .lowest = 0.0,
-                       .highest = 1e5}},
-       .act = [](LightState& state, size_t, Numbers x) { state.ambient_W_m2 += x[0]; }},
+       .parameters = {from_zero("irradiance_W_m2", "irradiance of the light of the room", 20.0,
+                                1e5)},
+       .act = adds_to(&LightState::ambient_W_m2)},
       // A thin box, fixed in the lab or on the body; its thickness has no visible effect. opacity 1
       // is opaque.
       {.name = "unmodelled_shadow",
        .explanation = "an opaque object outside the model hides lamps from part of the receiver",
        .index = Index::frame,
-       .parameters = {{.key = "opacity",
-                       .meaning = "opacity of the object",
-                       .scale = 0.5,
-                       .lowest = 0.0,
-                       .highest = 1.0},
+       .parameters = {from_zero("opacity", "opacity of the object", 0.5, 1.0),
                       {.key = "centre_m",
                        .meaning = "centre of the object, in the axes of `axes`",
                        .count = 3,
@@ -63,11 +56,8 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
       {.name = "interreflection",
        .explanation = "a wall that is assumed black scatters light",
        .index = Index::wall,
-       .parameters = {{.key = "diffuse",
-                       .meaning = "fraction of the light that the wall scatters by Lambert's law",
-                       .scale = 0.3,
-                       .lowest = 0.0,
-                       .highest = 1.0}},
+       .parameters = {from_zero(
+           "diffuse", "fraction of the light that the wall scatters by Lambert's law", 0.3, 1.0)},
        .act =
            [](LightState& state, size_t index, Numbers x) {
              state.walls.push_back({index, x[0], 0.0});
@@ -75,11 +65,8 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
       {.name = "interreflection",
        .explanation = "a wall that is assumed black mirrors light",
        .index = Index::wall,
-       .parameters = {{.key = "specular",
-                       .meaning = "fraction of the light that the wall mirrors",
-                       .scale = 0.3,
-                       .lowest = 0.0,
-                       .highest = 1.0}},
+       .parameters = {from_zero("specular", "fraction of the light that the wall mirrors", 0.3,
+                                1.0)},
        .act =
            [](LightState& state, size_t index, Numbers x) {
              state.walls.push_back({index, 0.0, x[0]});
@@ -87,15 +74,10 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
       // Multiplies the readings of a scan by `factor`.
       {.name = "detector_gain",
        .explanation = "the photodiode reads too much or too little by one factor",
-       .parameters = {{.key = "factor",
-                       .meaning = "factor on the readings of a scan",
-                       .neutral = 1.0,
-                       .scale = 0.1,
-                       .lowest = -0.95,
-                       .highest = 4.0}},
+       .parameters = {gain_factor("factor on the readings of a scan")},
        .in_sweeps = false,
        .in_runs = false,
-       .act = [](LightState& state, size_t, Numbers x) { state.detector_gain *= 1.0 + x[0]; }},
+       .act = multiplies(&LightState::detector_gain)},
   };
 }
 

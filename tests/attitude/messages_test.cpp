@@ -63,6 +63,10 @@ std::string oem_text(const Path& path, double duration_s, double interval_s,
          options.interpolation + "META_STOP\n\nCOMMENT states\n" + rows;
 }
 
+OrbitEphemeris orbit_of(const std::string& message) {
+  return OrbitEphemeris(new_file(message));
+}
+
 // Kepler's ellipse in closed form, except for the iteration of the eccentric anomaly.
 std::array<Vec3, 2> ellipse(double time_s) {
   constexpr double mu = 3.986004418e14, a_m = 8e6, e = 0.15;
@@ -93,25 +97,25 @@ TEST(OrbitMessage, IsInterpolatedAsItStates) {
            {"", 0.5},
            {"INTERPOLATION = HERMITE\nINTERPOLATION_DEGREE = 7\n", 0.5},
            {"INTERPOLATION = LAGRANGE\nINTERPOLATION_DEGREE = 9\n", 30.0}}) {
-    const auto file = new_file(oem_text(ellipse, 9600.0, 240.0, {.interpolation = interpolation}));
-    const OrbitEphemeris orbit(file);
+    const OrbitEphemeris orbit =
+        orbit_of(oem_text(ellipse, 9600.0, 240.0, {.interpolation = interpolation}));
     EXPECT_EQ(orbit.duration_s(), 9600.0);
     EXPECT_EQ(epoch_text(orbit.start()), "2026-03-01T00:00:00.000000");
     EXPECT_LT(largest_error_m(orbit), largest_m) << interpolation;
     const Vec3 velocity_m_s = orbit.at(5000.0)[1];
     EXPECT_LT((velocity_m_s - ellipse(5000.0)[1]).norm(), 1e-3 * velocity_m_s.norm());
   }
-  const auto linear =
-      new_file(oem_text(ellipse, 600.0, 10.0, {.interpolation = "INTERPOLATION = LINEAR\n"}));
+  const OrbitEphemeris linear =
+      orbit_of(oem_text(ellipse, 600.0, 10.0, {.interpolation = "INTERPOLATION = LINEAR\n"}));
   const Vec3 middle_m = 0.5 * (ellipse(100.0)[0] + ellipse(110.0)[0]);
-  EXPECT_LT((OrbitEphemeris(linear).at(105.0)[0] - middle_m).norm(), 1e-3);
+  EXPECT_LT((linear.at(105.0)[0] - middle_m).norm(), 1e-3);
 }
 
 TEST(OrbitMessage, KvnAndXmlHoldTheSame) {
-  const auto kvn = new_file(oem_text(ellipse, 2400.0, 60.0));
-  const auto xml = new_file(oem_text(ellipse, 2400.0, 60.0, {.xml = true}));
+  const OrbitEphemeris kvn = orbit_of(oem_text(ellipse, 2400.0, 60.0)),
+                       xml = orbit_of(oem_text(ellipse, 2400.0, 60.0, {.xml = true}));
   for (const double t_s : {0.0, 17.0, 1234.5, 2400.0}) {
-    EXPECT_EQ(OrbitEphemeris(kvn).at(t_s)[0], OrbitEphemeris(xml).at(t_s)[0]);
+    EXPECT_EQ(kvn.at(t_s)[0], xml.at(t_s)[0]);
   }
 }
 
@@ -120,8 +124,7 @@ TEST(OrbitMessage, MarksOfEditorsAreNoWords) {
   const std::string text = oem_text(ellipse, 2400.0, 60.0);
   std::string edited = "\xef\xbb\xbf";
   for (const char c : text) edited += c == '\n' ? "\r\n" : std::string(1, c);
-  const auto plain = new_file(text), marked = new_file(edited);
-  EXPECT_EQ(OrbitEphemeris(marked).at(17.0)[0], OrbitEphemeris(plain).at(17.0)[0]);
+  EXPECT_EQ(orbit_of(edited).at(17.0)[0], orbit_of(text).at(17.0)[0]);
 }
 
 // Segments as after a manoeuvre, which no polynomial may cross, with covariances between them.
@@ -134,14 +137,12 @@ TEST(OrbitMessage, SegmentsFollowEachOther) {
   const std::string block = second.substr(second.find("META_START"));
   const std::string covariance =
       "COVARIANCE_START\nEPOCH = 2026-03-01T00:00:00\n1\n0 1\nCOVARIANCE_STOP\n";
-  const auto file = new_file(oem_text(ellipse, 1200.0, 60.0) + covariance + block);
-  const OrbitEphemeris orbit(file);
+  const OrbitEphemeris orbit = orbit_of(oem_text(ellipse, 1200.0, 60.0) + covariance + block);
   EXPECT_EQ(orbit.duration_s(), 2400.0);
   EXPECT_LT((orbit.at(1199.0)[0] - ellipse(1199.0)[0]).norm(), 0.1);
   EXPECT_LT((orbit.at(1199.0)[1] - ellipse(1199.0)[1]).norm(), 0.1);
   EXPECT_GT(orbit.at(1201.0)[1].dot(-ellipse(1200.0)[1]), 0.0);
-  const auto apart = new_file(oem_text(ellipse, 1140.0, 60.0) + block);
-  EXPECT_THROW(OrbitEphemeris{apart}, InputError);
+  EXPECT_THROW(orbit_of(oem_text(ellipse, 1140.0, 60.0) + block), InputError);
 }
 
 // A geostationary satellite is at rest in ITRF and moves at 3.0747 km/s in inertial axes.
@@ -168,9 +169,9 @@ TEST(OrbitMessage, TimeSystemsAreConverted) {
            {"GPS", "2026-03-01T00:00:18"},
            {"TAI", "2026-03-01T00:00:37"},
            {"TT", "2026-03-01T00:01:09.184"}}) {
-    const auto file =
-        new_file(oem_text(ellipse, 600.0, 60.0, {.time_system = system, .start = start}));
-    EXPECT_EQ(epoch_text(OrbitEphemeris(file).start()), "2026-03-01T00:00:00.000000") << system;
+    const OrbitEphemeris orbit =
+        orbit_of(oem_text(ellipse, 600.0, 60.0, {.time_system = system, .start = start}));
+    EXPECT_EQ(epoch_text(orbit.start()), "2026-03-01T00:00:00.000000") << system;
   }
   // Around the leap second at the end of 2016, by IERS Bulletin C 52.
   EXPECT_EQ(epoch_text(*to_utc(*parse_epoch("2017-01-01T00:00:37"), "TAI")),
@@ -207,8 +208,7 @@ TEST(OrbitMessage, UnsupportedFeaturesAreRejected) {
     EXPECT_THAT(refusal, testing::HasSubstr(file.string()));
   }
   // States an hour apart, about two per revolution, are too few for a polynomial.
-  const auto sparse = new_file(oem_text(ellipse, 14400.0, 3600.0));
-  EXPECT_THROW(OrbitEphemeris{sparse}, InputError);
+  EXPECT_THROW(orbit_of(oem_text(ellipse, 14400.0, 3600.0)), InputError);
   // Numbers that are too small by a factor of 1000, so not in kilometres.
   const auto metres = new_file(oem_text(
       [](double t_s) {

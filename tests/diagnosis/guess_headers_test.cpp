@@ -36,8 +36,11 @@ class Headers : public testing::Test {
     return test_file("headers.csv", text);
   }
   std::vector<std::string> channels(const std::string& header) const {
+    return channels_in(table(header));
+  }
+  static std::vector<std::string> channels_in(const fs::path& file) {
     std::vector<std::string> all;
-    for (const GuessedColumn& c : guess_columns(table(header))) all.push_back(c.channel);
+    for (const GuessedColumn& c : guess_columns(file)) all.push_back(c.channel);
     return all;
   }
 };
@@ -45,6 +48,11 @@ class Headers : public testing::Test {
 struct Expected {
   const char *header, *stem;
   double to_SI;
+
+  void expect_of(const std::string& channel) const {
+    EXPECT_EQ(unit_of_key(channel).stem, stem) << header;
+    EXPECT_NEAR(unit_of_key(channel).to_SI, to_SI, 1e-12) << header;
+  }
 };
 
 constexpr double turn = 2.0 * pi, degree = pi / 180.0;
@@ -122,9 +130,7 @@ TEST_F(Headers, OfAnglesAndRates) {
       {"Position(m)", "x", 1.0},
   };
   for (const Expected& expected : table) {
-    const std::string channel = channels(std::string("t_s;") + expected.header).at(1);
-    EXPECT_EQ(unit_of_key(channel).stem, expected.stem) << expected.header;
-    EXPECT_NEAR(unit_of_key(channel).to_SI, expected.to_SI, 1e-12) << expected.header;
+    expected.expect_of(channels(std::string("t_s;") + expected.header).at(1));
   }
 }
 
@@ -137,9 +143,7 @@ TEST_F(Headers, OfTimes) {
                             {"tempo em minutos", "t", 60.0},  {"timeMs", "t", 1e-3},
                             {"Elapsed Time (h)", "t", 3600.0}};
   for (const Expected& expected : table) {
-    const std::string channel = channels(expected.header + std::string(";rate_rpm")).at(0);
-    EXPECT_EQ(unit_of_key(channel).stem, expected.stem) << expected.header;
-    EXPECT_NEAR(unit_of_key(channel).to_SI, expected.to_SI, 1e-12) << expected.header;
+    expected.expect_of(channels(expected.header + std::string(";rate_rpm")).at(0));
   }
 }
 
@@ -181,11 +185,7 @@ TEST_F(Headers, StateTheirUnitOrAreMarked) {
 // Coordinates in pixels or millimetres would be of a table of hundreds of metres.
 TEST_F(Headers, LargeCoordinatesWithoutAUnitAreMillimetres) {
   const auto names = [&](const std::string& rows) {
-    std::vector<std::string> all;
-    for (const GuessedColumn& c : guess_columns(test_file("place.csv", "t,x,y\n" + rows))) {
-      all.push_back(c.channel);
-    }
-    return all;
+    return channels_in(test_file("place.csv", "t,x,y\n" + rows));
   };
   EXPECT_THAT(names("0,310,4\n0.1,312,5\n"), testing::ElementsAre("t_s", "x_mm", "y_mm"));
   EXPECT_THAT(names("0,0.31,0.4\n0.1,0.32,0.5\n"), testing::ElementsAre("t_s", "x_m", "y_m"));

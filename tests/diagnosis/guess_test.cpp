@@ -20,6 +20,7 @@
 #include "diagnosis/guess/guess.h"
 #include "scenes/experiment/toml.h"
 #include "tests/diagnosis/machine_bench.h"
+#include "tests/diagnosis/named.h"
 #include "tests/files.h"
 #include "tests/noise.h"
 #include "tests/refusal.h"
@@ -33,9 +34,8 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::SizeIs;
 
-NominalModel model_of(const std::string& toml) {
-  return read_attitude_model(
-      Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "guess.toml"))));
+Settings settings_in(const std::string& toml) {
+  return Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "guess.toml")));
 }
 
 // The rates of a body that turns freely, a wheel on its z axis spinning up at `wheel_rad_s2`.
@@ -48,7 +48,7 @@ Recording thrown(const Mat3& inertia_kg_m2, const Vec3& rate_rad_s, double noise
   model.platform.inertia_kg_m2 = inertia_kg_m2;
   model.environment.gravity_lab_m_s2 = Vec3::Zero();
   if (wheel_kg_m2 > 0.0) {
-    const NominalModel with_wheel = model_of(
+    const NominalModel with_wheel = machine(
         "[platform]\ntopology = \"free\"\ninertia_kg_m2 = [[1,0,0],[0,1,0],[0,0,1]]\n"
         "[[disturbance]]\nkind = \"wheel_momentum\"\ninertia_kg_m2 = " +
         std::to_string(wheel_kg_m2) + "\n");
@@ -184,7 +184,7 @@ sigma = [[0, 0.1, 0.1], [0.1, 0.2, 0.1], [0.1, 0.1, 0.2]]
 
 TEST(Guess, RecordingsOfTwoBodiesAreDistinguished) {
   const Diagnosis d =
-      diagnose(model_of(free_toml),
+      diagnose(machine(free_toml),
                throws_of({{"one.csv", board}, {"two.csv", racquet}, {"three.csv", board}}), {});
   ASSERT_THAT(d.bodies, SizeIs(2));
   EXPECT_THAT(d.bodies[0].recordings, ElementsAre("one.csv", "three.csv"));
@@ -201,7 +201,7 @@ TEST(Guess, RecordingsOfTwoBodiesAreDistinguished) {
 
 TEST(Guess, RecordingsOfOneBodyAreNot) {
   const Diagnosis d =
-      diagnose(model_of(free_toml), throws_of({{"one.csv", board}, {"two.csv", board}}), {});
+      diagnose(machine(free_toml), throws_of({{"one.csv", board}, {"two.csv", board}}), {});
   EXPECT_TRUE(d.bodies.empty());
   for (const std::string& warning : d.warnings) EXPECT_THAT(warning, Not(HasSubstr("bodies")));
 }
@@ -210,7 +210,7 @@ TEST(Guess, AClockThatContradictsTheRatesIsReported) {
   std::vector<NamedRecording> runs = throws_of({{"one.csv", board}});
   for (const double factor : {1.0, 1.2}) {
     for (double& time_s : runs.front().recording.time_s) time_s *= factor;
-    const Diagnosis d = diagnose(model_of(free_toml), runs, {});
+    const Diagnosis d = diagnose(machine(free_toml), runs, {});
     if (factor == 1.0) {
       EXPECT_TRUE(d.instruments.empty());
       continue;
@@ -224,7 +224,7 @@ TEST(Guess, AClockThatContradictsTheRatesIsReported) {
 TEST(Guess, ASensorWithAnotherMountingIsReported) {
   const Mat3 turn = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
   const Diagnosis d =
-      diagnose(model_of(free_toml),
+      diagnose(machine(free_toml),
                throws_of({{"one.csv", board}, {"two.csv", turn * board * turn.transpose()}}), {});
   ASSERT_THAT(d.bodies, SizeIs(2));
   EXPECT_THAT(d.warnings.front(), HasSubstr("their principal moments agree"));
@@ -296,12 +296,10 @@ TEST(Guess, AWheelIsDiagnosedByItsGuess) {
   EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"one_axis\""),
                           HasSubstr("rate_deg_s = \"Angular speed (deg/s)\""),
                           HasSubstr("Unused columns: Battery")));
-  const Settings root(std::make_shared<const SettingsNode>(parse_toml(toml, "wheel.toml")));
+  const Settings root = settings_in(toml);
   const Recording recording = read_recording(file, read_recording_options(root.table("recording")));
   const Diagnosis d = diagnose(read_attitude_model(root), {{"wheel.csv", recording}}, {});
-  std::vector<std::string> kinds;
-  for (const FoundEffect& effect : d.effects) kinds.push_back(effect.kind);
-  EXPECT_THAT(kinds, testing::UnorderedElementsAre("dry_friction", "air_pressure_drag"));
+  EXPECT_THAT(kinds_of(d), testing::UnorderedElementsAre("dry_friction", "air_pressure_drag"));
 }
 
 std::string angles_text(const std::vector<double>& angle_rad, double interval_s) {
@@ -351,8 +349,7 @@ TEST(Guess, AVideoOfAPendulumShowsItsPivot) {
   const fs::path file = test_file("video.txt", text);
   const std::string toml = guess_experiment({file}, ".");
   EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"one_axis\""), HasSubstr("axis = \"x\"")));
-  const Settings root(std::make_shared<const SettingsNode>(parse_toml(toml, "video.toml")));
-  const RecordingOptions options = read_recording_options(root.table("recording"));
+  const RecordingOptions options = read_recording_options(settings_in(toml).table("recording"));
   ASSERT_TRUE(options.pivot_m);
   EXPECT_NEAR((*options.pivot_m)[0], pivot_x_m, 0.01);
   EXPECT_NEAR((*options.pivot_m)[1], pivot_y_m, 0.01);
@@ -437,7 +434,7 @@ TEST(Guess, AThrowHasTheRatiosOfItsMoments) {
   write_recording(file, thrown(board, {4.0, 2.0, 3.0}, 0.003, 7));
   const std::string toml = guess_experiment({file}, ".");
   EXPECT_THAT(toml, HasSubstr("topology = \"free\""));
-  const NominalModel model = model_of(toml);
+  const NominalModel model = machine(toml);
   EXPECT_NEAR(model.model.platform.inertia_kg_m2(1, 1), 0.4, 0.01);
   EXPECT_NEAR(model.model.platform.inertia_kg_m2(2, 2), 1.2, 0.02);
   EXPECT_TRUE(model.uncertain_inertia);

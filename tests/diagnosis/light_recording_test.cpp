@@ -13,13 +13,19 @@
 namespace photorque {
 namespace {
 
+LightRecording read(const std::string& text, const DefaultConditions& usual = {}) {
+  return read_light_recording(new_file(text, ".csv"), usual);
+}
+
+std::string refusal(const std::string& text) {
+  return refusal_of([&] { read(text); });
+}
+
 TEST(LightRecordings, AScanAmongCommentsAndTornRows) {
-  const auto scan = read_light_recording(
-      test_file("scan.csv",
-                "# operator: none\nsome words of an "
-                "instrument\nu_m,v_m,irradiance_W_m2,tilt_deg,heading_deg\n"
-                "0.01,0.02,300.5,12,60\n0.01,0.03\n0.02,0.02,nan,12,60\n0.03,0.02,301,12,60\n"),
-      {});
+  const auto scan = read(
+      "# operator: none\nsome words of an instrument\n"
+      "u_m,v_m,irradiance_W_m2,tilt_deg,heading_deg\n"
+      "0.01,0.02,300.5,12,60\n0.01,0.03\n0.02,0.02,nan,12,60\n0.03,0.02,301,12,60\n");
   EXPECT_EQ(scan.kind, LightRecording::Kind::scan);
   ASSERT_EQ(scan.rows(), 2u);
   EXPECT_EQ(scan.rows_read, 4);
@@ -31,18 +37,15 @@ TEST(LightRecordings, AScanAmongCommentsAndTornRows) {
 }
 
 TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
-  const auto sweep = read_light_recording(
-      test_file("sweep.csv", "voltage_mV,current_mA\n1000,250\n"), {Quat::Identity(), 310.0});
+  const auto sweep = read("voltage_mV,current_mA\n1000,250\n", {Quat::Identity(), 310.0});
   EXPECT_EQ(sweep.kind, LightRecording::Kind::sweep);
   EXPECT_NEAR(sweep.voltage_V[0], 1.0, 1e-12);
   EXPECT_NEAR(sweep.current_A[0], 0.25, 1e-12);
   EXPECT_EQ(sweep.temperature_K[0], 310.0);
-  const auto run = read_light_recording(
-      test_file("run.csv",
-                "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,array_power_W,"
-                "cell_temperature_K,led_current_A\n0,1,0,0,0,8,0.3,2.4,297,0.7\n"
-                "1,2,0,0,0,8,0.3,2.4,297,0.7\n"),
-      {});
+  const auto run = read(
+      "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,array_power_W,"
+      "cell_temperature_K,led_current_A\n0,1,0,0,0,8,0.3,2.4,297,0.7\n"
+      "1,2,0,0,0,8,0.3,2.4,297,0.7\n");
   EXPECT_EQ(run.kind, LightRecording::Kind::run);
   EXPECT_EQ(run.rows(), 1u);
   EXPECT_EQ(run.rejected.at("unreadable attitude"), 1);
@@ -52,11 +55,10 @@ TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
 TEST(LightRecordings, CopiesOfARowAreLeftOut) {
   std::string rows = "u_m,v_m,irradiance_W_m2\n0.01,0.02,300\n0.01,0.02,301\n";
   for (int i = 0; i < 50; ++i) rows += "0.02,0.02,310.5\n";
-  const auto scan = read_light_recording(test_file("copies.csv", rows), {});
+  const auto scan = read(rows);
   EXPECT_EQ(scan.irradiance_W_m2, (std::vector<double>{300.0, 301.0, 310.5}));
   EXPECT_EQ(scan.rejected.at("repeated row"), 49);
-  const auto sweeps = read_light_recording(
-      test_file("copied_sweep.csv", "sweep,voltage_V,current_A\n0,1,0.2\n1,1,0.2\n1,1,0.2\n"), {});
+  const auto sweeps = read("sweep,voltage_V,current_A\n0,1,0.2\n1,1,0.2\n1,1,0.2\n");
   EXPECT_EQ(sweeps.rows(), 2u);
 }
 
@@ -68,7 +70,7 @@ TEST(LightRecordings, NoiseOfTheLampsCurrentIsNoneOfTheirLight) {
     rows += std::to_string(i) + ",1,0,0,0,8,0.3," +
             std::to_string((i < 20 ? 0.7 : 0.07) + (i % 2 == 0 ? 1e-3 : -1e-3)) + "\n";
   }
-  const LightRecording noisy = read_light_recording(test_file("noisy.csv", rows), {});
+  const LightRecording noisy = read(rows);
   ASSERT_EQ(noisy.lamp_light.size(), 40u);
   for (size_t i = 0; i < 40; ++i) {
     EXPECT_NEAR(noisy.lamp_light[i], i < 20 ? 1.0 : 0.1, 1e-12) << i;
@@ -78,19 +80,18 @@ TEST(LightRecordings, NoiseOfTheLampsCurrentIsNoneOfTheirLight) {
 // Lamps that are dimmed say so by their current; a constant one says nothing. Rows chosen keep what
 // is theirs.
 TEST(LightRecordings, DimmedLampsAreRelativeToTheirBrightest) {
-  const auto with_currents = [](const char* name, const char* second) {
-    return read_light_recording(
-        test_file(name, std::string("t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,"
-                                    "led_current_A\n0,1,0,0,0,8,0.3,0.7\n1,1,0,0,0,7,0.1,") +
-                            second + "\n2,1,0,0,0,8,0.3,\n"),
-        {});
+  const auto with_current = [](const std::string& second) {
+    return read(
+        "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,led_current_A\n"
+        "0,1,0,0,0,8,0.3,0.7\n1,1,0,0,0,7,0.1," +
+        second + "\n2,1,0,0,0,8,0.3,\n");
   };
-  const LightRecording dimmed = with_currents("dimmed.csv", "0.175");
+  const LightRecording dimmed = with_current("0.175");
   ASSERT_EQ(dimmed.lamp_light.size(), 3u);
   EXPECT_NEAR(dimmed.lamp_light[0], 1.0, 1e-12);
   EXPECT_NEAR(dimmed.lamp_light[1], 0.25, 1e-12);
   EXPECT_NEAR(dimmed.lamp_light[2], 0.25, 1e-12);
-  EXPECT_TRUE(with_currents("steady.csv", "0.69").lamp_light.empty());
+  EXPECT_TRUE(with_current("0.69").lamp_light.empty());
   const LightRecording last = dimmed.part({1, 2});
   ASSERT_EQ(last.rows(), 2u);
   EXPECT_EQ(last.time_s, (std::vector<double>{1.0, 2.0}));
@@ -100,17 +101,14 @@ TEST(LightRecordings, DimmedLampsAreRelativeToTheirBrightest) {
 
 // Once a conversion without a meaning.
 TEST(LightRecordings, NumbersOfSweepsBeyondAllCountingAreLeftOut) {
-  const auto sweep = read_light_recording(
-      test_file("many.csv", "sweep,voltage_V,current_A\n1e300,1,0.2\n-3,1,0.2\n"), {});
+  const auto sweep = read("sweep,voltage_V,current_A\n1e300,1,0.2\n-3,1,0.2\n");
   ASSERT_EQ(sweep.rows(), 1u);
   EXPECT_EQ(sweep.sweep[0], -3);
   EXPECT_EQ(sweep.rejected.at("unreadable number"), 1);
 }
 
 TEST(LightRecordings, RowsOfAnotherLengthThanTheHeaderAreNamedWhereMostAre) {
-  const fs::path path =
-      test_file("commas.csv", "voltage_V,current_A\n1,2\n0,5,0,2\n0,6,0,2\n0,7,0,2\n");
-  EXPECT_THAT(refusal_of([&] { read_light_recording(path, {}); }),
+  EXPECT_THAT(refusal("voltage_V,current_A\n1,2\n0,5,0,2\n0,6,0,2\n0,7,0,2\n"),
               testing::HasSubstr(":3: found a row of 4 cells, expected 2"));
 }
 
@@ -122,34 +120,27 @@ TEST(LightRecordings, PartsOfAnAttitudeAreRefused) {
     const auto cells = static_cast<int>(std::ranges::count(header, ','));
     std::string row = "0.1,0.2,300";
     for (int i = 2; i < cells; ++i) row += ",0.5";
-    EXPECT_THAT(refusal_of([&] {
-                  read_light_recording(test_file("part.csv", header + "\n" + row + "\n"), {});
-                }),
-                testing::HasSubstr("alone of an attitude"))
+    EXPECT_THAT(refusal(header + "\n" + row + "\n"), testing::HasSubstr("alone of an attitude"))
         << columns;
   }
 }
 
 TEST(LightRecordings, SpreadsheetsMayMarkTheirByteOrder) {
-  const auto scan = read_light_recording(
-      test_file("marked.csv", "\xEF\xBB\xBFu_m,v_m,irradiance_W_m2\r\n0.1,0.2,300\r\n"), {});
+  const auto scan = read("\xEF\xBB\xBFu_m,v_m,irradiance_W_m2\r\n0.1,0.2,300\r\n");
   EXPECT_EQ(scan.kind, LightRecording::Kind::scan);
   EXPECT_EQ(scan.rows(), 1u);
 }
 
 TEST(LightRecordings, LampsWithoutAnyCurrentAreRefused) {
-  const auto file = test_file("dark.csv",
-                              "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,led_current_A\n"
-                              "0,1,0,0,0,8,0.3,0\n1,1,0,0,0,8,0.3,0\n");
-  EXPECT_THROW(read_light_recording(file, {}), InputError);
+  EXPECT_THROW(read("t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,led_current_A\n"
+                    "0,1,0,0,0,8,0.3,0\n1,1,0,0,0,8,0.3,0\n"),
+               InputError);
 }
 
 TEST(LightRecordings, SweepsAreReadAsInstrumentsWriteThem) {
-  const auto german =
-      read_light_recording(test_file("german.csv",
-                                     "Modul 17\nSpannung [V];Strom [mA];Zelltemperatur [°C]\n"
-                                     "0,1;500;24\n0,2;NaN;24\n0,3;400;26\n"),
-                           {});
+  const auto german = read(
+      "Modul 17\nSpannung [V];Strom [mA];Zelltemperatur [°C]\n"
+      "0,1;500;24\n0,2;NaN;24\n0,3;400;26\n");
   EXPECT_EQ(german.kind, LightRecording::Kind::sweep);
   ASSERT_EQ(german.rows(), 2u);
   EXPECT_NEAR(german.voltage_V[1], 0.3, 1e-15);
@@ -157,8 +148,7 @@ TEST(LightRecordings, SweepsAreReadAsInstrumentsWriteThem) {
   EXPECT_TRUE(german.has_temperatures);
   EXPECT_NEAR(german.temperature_K[0], 298.15, 1e-9);
   EXPECT_EQ(german.rejected.at("unreadable number"), 1);
-  const auto several = read_light_recording(
-      test_file("several.csv", "Curve\tVolts\tAmps\n7\t0\t5\n7\t30\t0\n9\t0\t4\n"), {});
+  const auto several = read("Curve\tVolts\tAmps\n7\t0\t5\n7\t30\t0\n9\t0\t4\n");
   EXPECT_EQ(several.sweep, (std::vector{0, 0, 1}));
 }
 
@@ -214,8 +204,7 @@ TEST(LightRecordings, OthersAreRefused) {
       test_file("motion.csv", "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s\n0,1,0,0,0,0\n");
   EXPECT_FALSE(is_light_recording(motion));
   EXPECT_THROW(read_light_recording(motion, {}), InputError);
-  EXPECT_THROW(read_light_recording(test_file("empty.csv", "voltage_V,current_A\n"), {}),
-               InputError);
+  EXPECT_THROW(read("voltage_V,current_A\n"), InputError);
 }
 
 }  // namespace

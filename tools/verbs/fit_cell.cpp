@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/recordings/named_columns.h"
+#include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"

@@ -29,9 +29,7 @@ void cut_triangle(const std::array<Vec3, 3>& t, double largest_m2, std::vector<W
 
 std::vector<WallPatch> patches_of(const LightLab& lab, const LightWall& wall) {
   constexpr double parts = 1500.0;
-  const SurfaceGrid& g = lab.grid();
-  const Vec3 middle = lab.point_body_m(0.5 * (g.u_low + g.u_high), 0.5 * (g.v_low + g.v_high)) +
-                      1e-3 * lab.normal_body();
+  const Vec3 middle = lab.middle_body_m() + 1e-3 * lab.normal_body();
   double area = 0.0;
   for (const auto& t : wall.triangles) area += 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
   std::vector<WallPatch> patches;

@@ -108,6 +108,10 @@ Vec3 LightLab::point_body_m(double u_m, double v_m) const {
   return u_m * grid().u_axis_body + v_m * grid().v_axis_body + parts_.plane_m * grid().normal_body;
 }
 
+Vec3 LightLab::middle_body_m() const {
+  return point_body_m(0.5 * (grid().u_low + grid().u_high), 0.5 * (grid().v_low + grid().v_high));
+}
+
 void LightLab::read_noise() {
   for (const Settings& sensors : experiment_.file.others("sensors")) {
     if (sensors.has(noise_key::of_scans)) {
@@ -202,8 +206,7 @@ void LightLab::place_cells() {
 // of standard deviation s, four points err by some 2e-5 (h/s)^8. Shadow edges require many.
 size_t LightLab::points_of_rule() const {
   if (!walls().empty()) return 12;
-  const Vec3 middle =
-      point_body_m(0.5 * (grid().u_low + grid().u_high), 0.5 * (grid().v_low + grid().v_high));
+  const Vec3 middle = middle_body_m();
   const double half_m = 0.5 * std::max((grid().u_high - grid().u_low) / design().columns,
                                        (grid().v_high - grid().v_low) / design().rows);
   double narrowest_m = 1e300;
@@ -218,8 +221,7 @@ size_t LightLab::points_of_rule() const {
 }
 
 double LightLab::narrowest_edge_m() const {
-  const Vec3 middle =
-      point_body_m(0.5 * (grid().u_low + grid().u_high), 0.5 * (grid().v_low + grid().v_high));
+  const Vec3 middle = middle_body_m();
   constexpr int steps = 100;
   constexpr double widest_rad = 1.5, steepest_of_gaussian = 0.60653;  // e^(−1/2)
   double narrowest_m = 1e300;

@@ -65,6 +65,7 @@ class LightLab {
 
   // The point of the receiver at map coordinates u, v.
   Vec3 point_body_m(double u_m, double v_m) const;
+  Vec3 middle_body_m() const;
   Vec3 normal_body() const { return grid().normal_body; }
   // Width over which the light of the sharpest lamp falls off on the receiver: the standard
   // deviation of a Gaussian spot of equal brightness and maximum slope.

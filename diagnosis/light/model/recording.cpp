@@ -7,7 +7,6 @@
 #include <optional>
 #include <unordered_set>
 
-#include "attitude/recordings/named_columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
 #include "core/numerics/median.h"
@@ -61,9 +60,7 @@ class LightHeader {
       if (names_[i] == name) return LightColumn{i, wanted.to_SI};
     }
     for (size_t i = 0; i < names_.size(); ++i) {
-      const bool same = !wanted.unit.empty() && units_[i].stem == wanted.stem &&
-                        units_[i].dimension == wanted.dimension;
-      if (same) return LightColumn{i, units_[i].to_SI};
+      if (is_of(i, wanted)) return LightColumn{i, units_[i].to_SI};
     }
     return std::nullopt;
   }
@@ -77,16 +74,19 @@ class LightHeader {
   }
 
  private:
+  // Whether a column has the quantity of this key, also in another unit.
+  bool is_of(size_t column, const KeyUnit& wanted) const {
+    return !wanted.unit.empty() && units_[column].stem == wanted.stem &&
+           units_[column].dimension == wanted.dimension;
+  }
+
   // If the file has the column `written` for the quantity `name`, other columns of that quantity
   // are ignored.
   void ignore_beside(const std::string& name, const std::string& written) {
     if (std::ranges::find(written_, written) == written_.end()) return;
     const KeyUnit wanted = unit_of_key(name);
     for (size_t i = 0; i < names_.size(); ++i) {
-      const bool is_same =
-          names_[i] == name || (!wanted.unit.empty() && units_[i].stem == wanted.stem &&
-                                units_[i].dimension == wanted.dimension);
-      if (!is_same || written_[i] == written) continue;
+      if ((names_[i] != name && !is_of(i, wanted)) || written_[i] == written) continue;
       names_[i].clear();
       units_[i] = {};
     }

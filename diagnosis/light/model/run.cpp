@@ -258,10 +258,16 @@ void LightRun::find_circumstances(const PartOf* known) {
 void LightRun::number_samples() {
   sample_row_.clear();
   sample_channel_.clear();
-  channels_ = is_scan()         ? std::vector<std::string>{"irradiance_W_m2"}
-              : holds_maximum() ? std::vector<std::string>{"array_voltage_V", "array_current_A"}
-              : is_run()        ? std::vector<std::string>{"array_current_A"}
-                                : std::vector<std::string>{"current_A"};
+  if (is_scan()) {
+    channels_ = {{"irradiance_W_m2", &LightRecording::irradiance_W_m2, &Expected::irradiance_W_m2}};
+  } else {
+    channels_ = {{is_run() ? "array_current_A" : "current_A", &LightRecording::current_A,
+                  &Expected::current_A}};
+    if (holds_maximum()) {
+      channels_.insert(channels_.begin(),
+                       {"array_voltage_V", &LightRecording::voltage_V, &Expected::voltage_V});
+    }
+  }
   for (size_t row = 0; row < recording_.rows(); ++row) {
     for (size_t c = 0; c < channels_.size(); ++c) {
       sample_row_.push_back(row);
@@ -270,13 +276,17 @@ void LightRun::number_samples() {
   }
 }
 
+void LightRun::keep_scales_of(const LightRun& whole) {
+  voltage_scale_V_ = whole.voltage_scale_V_;
+  current_scale_A_ = whole.current_scale_A_;
+  number_ = whole.number_;
+}
+
 LightRun LightRun::part(const std::vector<size_t>& rows) const {
   const PartOf known{this, &rows};
   LightRun run(*lab_, recording_.part(rows), &known);
+  run.keep_scales_of(*this);
   if (is_scan()) run.irradiance_sigma_ = chosen(irradiance_sigma_, rows);
-  run.voltage_scale_V_ = voltage_scale_V_;
-  run.current_scale_A_ = current_scale_A_;
-  run.number_ = number_;
   return run;
 }
 
@@ -289,10 +299,8 @@ LightRun LightRun::in(const LightLab& lab) const {
     std::ranges::fill(there.temperature_K, lab.design().temperature_K);
   }
   LightRun run(lab, std::move(there));
+  run.keep_scales_of(*this);
   run.irradiance_sigma_ = irradiance_sigma_;
-  run.voltage_scale_V_ = voltage_scale_V_;
-  run.current_scale_A_ = current_scale_A_;
-  run.number_ = number_;
   return run;
 }
 

@@ -52,8 +52,14 @@ class LightRun {
   // Number of residuals, and the channel of each.
   size_t samples() const { return sample_row_.size(); }
   const std::vector<int>& sample_channel() const { return sample_channel_; }
-  // Channel names: "irradiance_W_m2", "current_A", "array_voltage_V", …
-  const std::vector<std::string>& channels() const { return channels_; }
+  // The readings that are compared with the model.
+  struct Expected;
+  struct Channel {
+    const char* name;  // "irradiance_W_m2", "current_A", "array_voltage_V", …
+    std::vector<double> LightRecording::*measured;
+    double Expected::*expected;
+  };
+  const std::vector<Channel>& channels() const { return channels_; }
   double row_noise(size_t row) const { return irradiance_sigma_[row]; }
 
   // Selects rows.
@@ -120,6 +126,7 @@ class LightRun {
   LightRun(const LightLab& lab, LightRecording recording, const PartOf* known);
   void find_circumstances(const PartOf* known);
   void number_samples();
+  void keep_scales_of(const LightRun& whole);
   bool is_trapped(const LightState& state, size_t row) const;
   // χ² of a reading relative to a maximum.
   double chi2_at(const ArrayPoint& maximum, size_t row) const;
@@ -157,7 +164,7 @@ class LightRun {
   std::vector<SampleConditions> circumstances_;  // per output
   std::vector<size_t> sample_row_;
   std::vector<int> sample_channel_;
-  std::vector<std::string> channels_;
+  std::vector<Channel> channels_;
 };
 
 }  // namespace photorque

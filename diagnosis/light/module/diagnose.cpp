@@ -4,19 +4,89 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "diagnosis/light/module/explain.h"
-#include "diagnosis/light/module/plausible.h"
 #include "diagnosis/light/module/report.h"
 
 namespace photorque {
 namespace {
 
+// The current at the voltage nearest to zero; 0 without points.
+double short_circuit_A(const std::vector<double>& voltage_V, const std::vector<double>& current_A) {
+  double found_A = 0.0, nearest_V = INFINITY;
+  for (size_t i = 0; i < voltage_V.size(); ++i) {
+    if (std::abs(voltage_V[i]) > nearest_V) continue;
+    nearest_V = std::abs(voltage_V[i]);
+    found_A = current_A[i];
+  }
+  return found_A;
+}
+
+// Light of a curve relative to the reference, from the current at the lowest voltage; ≥ 1e-3.
+double light_of(const ModuleSweep& sweep, const ModuleNominal& nominal) {
+  return std::max(short_circuit_A(sweep.voltage_V, sweep.current_A) / nominal.cell.photocurrent_A,
+                  1e-3);
+}
+
+// Throws InputError for currents and voltages that are impossible in any light at any temperature:
+// a wrong unit, or exchanged columns.
+void require_plausible(const ModuleSweep& sweep, const ModuleDesign& design,
+                       const ModuleNominal& nominal) {
+  const ModuleCell& cell = nominal.cell;
+  const double thermal_V = boltzmann_J_K * cell.temperature_K / elementary_charge_C;
+  const double open_V = design.cells * cell.ideality * thermal_V *
+                        std::log1p(cell.photocurrent_A / cell.saturation_A);
+  const double light = light_of(sweep, nominal);
+  double seen_V = 0.0;  // the largest voltage with a forward current
+  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+    if (sweep.current_A[i] >= 0.0) seen_V = std::max(seen_V, sweep.voltage_V[i]);
+  }
+  constexpr double most_suns = 20.0, most_V = 1.25;
+  if (light > most_suns) {
+    throw InputError({sweep.name}, "current_A",
+                     printed("%.3g times the current of the reference module", light),
+                     "amperes (a column in milliamperes is named current_mA)");
+  }
+  if (seen_V > most_V * open_V) {
+    const double exchanged = light * cell.photocurrent_A / open_V;
+    constexpr double alike = 0.15;
+    throw InputError({sweep.name}, "voltage_V",
+                     printed("%.3g V at a current, where the reference module gives %.3g V at none",
+                             seen_V, open_V),
+                     std::abs(exchanged - 1.0) < alike
+                         ? "the voltage: the columns of voltage and current look exchanged"
+                         : "volts of the module of the experiment (a column in millivolts is named "
+                           "voltage_mV)");
+  }
+}
+
+// Throws InputError if the current is positive into the module.
+void require_current_forward(const LightRecording& recording) {
+  const double short_A = short_circuit_A(recording.voltage_V, recording.current_A);
+  double largest_A = 0.0;
+  for (const double current_A : recording.current_A)
+    largest_A = std::max(largest_A, std::abs(current_A));
+  if (short_A > -0.5 * largest_A) return;
+  throw InputError(
+      {recording.name}, "current_A", "a negative current at the smallest voltage",
+      "positive currents of an illuminated module: the sign of the column is reversed");
+}
+
+// Throws InputError for a scan or a run.
+void require_curve(const LightRecording& recording) {
+  if (recording.kind == LightRecording::Kind::sweep) return;
+  throw InputError({recording.name}, "header", "no columns voltage_V,current_A",
+                   "a current-voltage curve, for an experiment with [module]");
+}
+
 ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const ModuleNominal& nominal,
-                 const ModuleDiagnoseOptions& options, DataQuality& quality) {
+                 DataQuality& quality) {
+  constexpr size_t max_points = 160;  // longer curves are thinned
   int64_t dropped = 0;
   require_current_forward(r);
-  ModuleRun run{module_sweep(r, design, options.max_points, &dropped)};
+  ModuleRun run{module_sweep(r, design, max_points, &dropped)};
   run.sweep.temperature_K = r.has_temperatures ? median_of(r.temperature_K) : design.temperature_K;
   run.irradiance_W_m2 = median_of(r.irradiance_W_m2);
   require_plausible(run.sweep, design, nominal);
@@ -46,16 +116,15 @@ ModuleData of_one_curve(const ModuleRun& whole) {
 // hypotheses are fitted. `light` returns the light of each curve relative to the reference, as
 // fitted with the nominal model.
 std::vector<Diagnosis> each_curve(const ModuleDesign& design, const ModuleNominal& nominal,
-                                  const ModuleData& all, const ModuleDiagnoseOptions& options,
+                                  const ModuleData& all, int threads, const Thresholds& limits,
                                   std::vector<double>& light) {
   const std::vector<ModuleHypothesis> hypotheses = module_hypotheses(design, nominal);
   std::vector<Diagnosis> each;
   for (const ModuleRun& curve : all.whole) {
     const ModuleData data = of_one_curve(curve);
-    const ModuleAnswer answer =
-        explain_module(design, nominal, hypotheses, data, options.threads, options.limits);
+    const ModuleAnswer answer = explain_module(design, nominal, hypotheses, data, threads, limits);
     light.push_back(std::exp(answer.trials.front().fit.at[0]));
-    each.push_back(described(design, nominal, answer, data, options.limits));
+    each.push_back(described(design, nominal, answer, data, limits));
     Diagnosis& d = each.back();
     const std::string name = std::filesystem::path(curve.sweep.name).filename().string();
     for (FoundEffect& effect : d.effects) effect.texts.emplace_back("curve", name);
@@ -68,9 +137,9 @@ std::vector<Diagnosis> each_curve(const ModuleDesign& design, const ModuleNomina
 }  // namespace
 
 Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRecording>& recordings,
-                          const std::vector<LightRecording>& holdouts,
-                          const ModuleDiagnoseOptions& options) {
+                          const std::vector<LightRecording>& holdouts, int threads) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
+  const Thresholds limits;
   const ModuleNominal nominal = nominal_module(design);
   ModuleData data;
   DataQuality quality;
@@ -78,7 +147,7 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
     for (const LightRecording& file : files) {
       require_curve(file);
       for (const LightRecording& curve : sweeps_of(file)) {
-        runs.push_back(run_of(curve, design, nominal, options, quality));
+        runs.push_back(run_of(curve, design, nominal, quality));
         data.whole.push_back(runs.back());
       }
     }
@@ -99,7 +168,7 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   bool is_done = false;
   if (holdouts.empty() && data.whole.size() > 1) {
     std::vector<double> light;
-    std::vector<Diagnosis> each = each_curve(design, nominal, data, options, light);
+    std::vector<Diagnosis> each = each_curve(design, nominal, data, threads, limits, light);
     const auto differing = static_cast<size_t>(std::ranges::count_if(
         each, [](const Diagnosis& one) { return one.verdict != Verdict::consistent; }));
     const bool is_even = differing == 0 || differing == each.size();
@@ -110,9 +179,9 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
     }
   }
   if (!is_done) {
-    const ModuleAnswer answer = explain_module(design, nominal, module_hypotheses(design, nominal),
-                                               data, options.threads, options.limits);
-    d = described(design, nominal, answer, data, options.limits);
+    const ModuleAnswer answer =
+        explain_module(design, nominal, module_hypotheses(design, nominal), data, threads, limits);
+    d = described(design, nominal, answer, data, limits);
     d.sentence = module_sentence(d);
     const inference::Fit& fit = answer.joint[answer.decision.chosen].fit;
     std::vector<double> light;

@@ -7,21 +7,12 @@
 
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/light/module/design.h"
-#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 
-struct ModuleDiagnoseOptions {
-  int threads = 0;  // 0: all
-  // Limit per curve; longer ones are thinned.
-  size_t max_points = 160;
-  Thresholds limits;
-};
-
 // Without holdouts every fourth segment of each curve is held out. Throws InputError for recordings
-// other than curves. The result is independent of the number of threads.
+// other than curves. `threads`: 0 for all; the result is independent of them.
 Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRecording>& recordings,
-                          const std::vector<LightRecording>& holdouts,
-                          const ModuleDiagnoseOptions& options = {});
+                          const std::vector<LightRecording>& holdouts, int threads = 0);
 
 }  // namespace photorque

@@ -19,15 +19,8 @@ using Eigen::Index, Eigen::VectorXd;
 std::pair<ModuleRun, ModuleRun> split_curve(const ModuleRun& run, size_t block,
                                             const std::function<bool(size_t segment)>& is_held) {
   ModuleRun train = run, held = run;
-  for (ModuleRun* r : {&train, &held}) {
-    r->sweep.voltage_V.clear();
-    r->sweep.current_A.clear();
-  }
-  for (size_t i = 0; i < run.sweep.voltage_V.size(); ++i) {
-    ModuleRun& to = is_held(i / block) ? held : train;
-    to.sweep.voltage_V.push_back(run.sweep.voltage_V[i]);
-    to.sweep.current_A.push_back(run.sweep.current_A[i]);
-  }
+  train.sweep = run.sweep.selected([&](size_t i) { return !is_held(i / block); });
+  held.sweep = run.sweep.selected([&](size_t i) { return is_held(i / block); });
   return {std::move(train), std::move(held)};
 }
 

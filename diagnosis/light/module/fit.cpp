@@ -36,14 +36,8 @@ Acting acting(const ModuleDesign& design, const ModuleNominal& nominal, const Mo
 std::vector<ModuleRun> thinned(std::vector<ModuleRun> runs) {
   constexpr size_t every = 3, fewest = 20;
   for (ModuleRun& run : runs) {
-    const ModuleSweep all = run.sweep;
-    if (all.voltage_V.size() < every * fewest) continue;
-    run.sweep.voltage_V.clear();
-    run.sweep.current_A.clear();
-    for (size_t i = 0; i < all.voltage_V.size(); i += every) {
-      run.sweep.voltage_V.push_back(all.voltage_V[i]);
-      run.sweep.current_A.push_back(all.current_A[i]);
-    }
+    if (run.sweep.voltage_V.size() < every * fewest) continue;
+    run.sweep = run.sweep.selected([](size_t i) { return i % every == 0; });
   }
   return runs;
 }

@@ -22,15 +22,23 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 // temperature. 25 curves of a module of 60 cells (NIST) from 14 to 960 W/m² give less.
 constexpr double translation_sigma[] = {0.25, 2.5, 0.1, 1.0, 0.5};
 
+// The numbers of a cell in the order of ModuleNominal::numbers: those with logarithms, and powers.
+constexpr double ModuleCell::*cell_numbers[] = {&ModuleCell::photocurrent_A,
+                                                &ModuleCell::saturation_A, &ModuleCell::ideality,
+                                                &ModuleCell::series_ohm, &ModuleCell::shunt_ohm};
+constexpr double Translation::*translation_powers[] = {
+    &Translation::series_by_light, &Translation::series_by_temperature,
+    &Translation::ideality_by_light, &Translation::ideality_by_temperature,
+    &Translation::shunt_by_light};
+
 // The cell from logarithms and from powers in units of their expected sizes.
 ModuleCell cell_of(const VectorXd& x, double temperature_K) {
-  ModuleCell cell{std::exp(x[0]), std::exp(x[1]), std::exp(x[2]),
-                  std::exp(x[3]), std::exp(x[4]), temperature_K};
+  ModuleCell cell;
+  cell.temperature_K = temperature_K;
+  for (Index k = 0; k < 5; ++k) cell.*cell_numbers[k] = std::exp(x[k]);
   if (x.size() < ModuleNominal::numbers) return cell;
-  Translation& by = cell.translation;
-  double* const powers[] = {&by.series_by_light, &by.series_by_temperature, &by.ideality_by_light,
-                            &by.ideality_by_temperature, &by.shunt_by_light};
-  for (Index k = 0; k < 5; ++k) *powers[k] = translation_sigma[k] * x[5 + k];
+  for (Index k = 0; k < 5; ++k)
+    cell.translation.*translation_powers[k] = translation_sigma[k] * x[5 + k];
   return cell;
 }
 
@@ -250,6 +258,18 @@ ModuleNominal nominal_of_references(const ModuleDesign& design) {
 
 }  // namespace
 
+ModuleSweep ModuleSweep::selected(const std::function<bool(size_t point)>& keeps) const {
+  ModuleSweep some = *this;
+  some.voltage_V.clear();
+  some.current_A.clear();
+  for (size_t i = 0; i < voltage_V.size(); ++i) {
+    if (!keeps(i)) continue;
+    some.voltage_V.push_back(voltage_V[i]);
+    some.current_A.push_back(current_A[i]);
+  }
+  return some;
+}
+
 ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& design,
                          size_t max_rows, int64_t* dropped) {
   const std::vector<size_t> order = sorted_indices(recording.rows(), [&](size_t a, size_t b) {
@@ -270,32 +290,16 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
   all.noise_A =
       design.current_noise_A.value_or(std::max(noise_of(all.current_A), 1e-5 * largest_A));
   // Outliers: points outside the range of their two neighbours by more than a curve can bend.
-  ModuleSweep good = all;
-  good.voltage_V.clear();
-  good.current_A.clear();
   const double limit_A = std::max(20.0 * all.noise_A, 0.05 * largest_A);
-  for (size_t i = 0; i < all.current_A.size(); ++i) {
-    const bool inner = i > 0 && i + 1 < all.current_A.size();
-    const double low = inner ? std::min(all.current_A[i - 1], all.current_A[i + 1]) : 0.0,
-                 high = inner ? std::max(all.current_A[i - 1], all.current_A[i + 1]) : 0.0;
-    const bool is_outlier =
-        inner && (all.current_A[i] < low - limit_A || all.current_A[i] > high + limit_A);
-    if (is_outlier) {
-      if (dropped != nullptr) ++*dropped;
-      continue;
-    }
-    good.voltage_V.push_back(all.voltage_V[i]);
-    good.current_A.push_back(all.current_A[i]);
-  }
+  const ModuleSweep good = all.selected([&](size_t i) {
+    if (i == 0 || i + 1 == all.current_A.size()) return true;
+    const auto [low, high] = std::minmax(all.current_A[i - 1], all.current_A[i + 1]);
+    const bool is_outlier = all.current_A[i] < low - limit_A || all.current_A[i] > high + limit_A;
+    if (is_outlier && dropped != nullptr) ++*dropped;
+    return !is_outlier;
+  });
   const size_t every = (good.current_A.size() + max_rows - 1) / max_rows;
-  ModuleSweep result = good;
-  result.voltage_V.clear();
-  result.current_A.clear();
-  for (size_t i = 0; i < good.current_A.size(); i += every) {
-    result.voltage_V.push_back(good.voltage_V[i]);
-    result.current_A.push_back(good.current_A[i]);
-  }
-  return result;
+  return good.selected([every](size_t i) { return i % every == 0; });
 }
 
 ModuleWiring wiring_of(const ModuleDesign& design) {
@@ -305,16 +309,10 @@ ModuleWiring wiring_of(const ModuleDesign& design) {
 ModuleCell moved(const ModuleNominal& nominal, const ModuleNominal::Numbers& z) {
   const ModuleNominal::Numbers by = nominal.root * z;
   ModuleCell cell = nominal.cell;
-  cell.photocurrent_A *= std::exp(by[0]);
-  cell.saturation_A *= std::exp(by[1]);
-  cell.ideality *= std::exp(by[2]);
-  cell.series_ohm *= std::exp(by[3]);
-  cell.shunt_ohm *= std::exp(by[4]);
-  cell.translation.series_by_light += by[5];
-  cell.translation.series_by_temperature += by[6];
-  cell.translation.ideality_by_light += by[7];
-  cell.translation.ideality_by_temperature += by[8];
-  cell.translation.shunt_by_light += by[9];
+  for (Index k = 0; k < 5; ++k) {
+    cell.*cell_numbers[k] *= std::exp(by[k]);
+    cell.translation.*translation_powers[k] += by[5 + k];
+  }
   return cell;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 
 #include "diagnosis/light/module/curve.h"
 #include "diagnosis/light/module/design.h"
@@ -15,6 +16,9 @@ struct ModuleSweep {
   std::vector<double> voltage_V, current_A;  // rising voltage
   double light = 1.0;    // relative to the reference, from the currents at low voltage
   double noise_A = 0.0;  // noise of a reading; estimated from its neighbours if not stated
+
+  // The curve with the points whose indices `keeps` accepts.
+  ModuleSweep selected(const std::function<bool(size_t point)>& keeps) const;
 };
 
 // Thins a sweep to at most `max_rows` points by voltage and removes outliers. Throws InputError for

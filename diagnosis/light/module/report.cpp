@@ -1,12 +1,13 @@
 #include "diagnosis/light/module/report.h"
-#include "core/numerics/median.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <iterator>
 #include <numeric>
+
+#include "core/numerics/median.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -198,11 +199,16 @@ bool is_its_own_reference(const ModuleDesign& design,
   });
 }
 
+// The mean weighted by the numbers of samples.
+double weighted_mean(double a, int64_t samples_a, double b, int64_t samples_b) {
+  const auto m = static_cast<double>(samples_a), n = static_cast<double>(samples_b);
+  return (m * a + n * b) / (m + n);
+}
+
 // Adds to the root mean square, weighted by the numbers of samples.
 void add_rms(const Holdout& more, Holdout& all) {
   const auto mean = [&](double a, double b) {
-    const auto m = static_cast<double>(all.samples), n = static_cast<double>(more.samples);
-    return (m * a + n * b) / (m + n);
+    return weighted_mean(a, all.samples, b, more.samples);
   };
   for (const auto member : {&Holdout::rms_before, &Holdout::rms_after}) {
     double& rms = (all.*member)["current_A"];
@@ -307,16 +313,14 @@ Diagnosis of_all_curves(std::vector<Diagnosis> each) {
   all.effect_table = "effect";
   all.confidence = 1.0;
   all.holdout.emplace();
-  int64_t samples = 0;
   size_t differing = 0;
   constexpr size_t most_drawn = 12;  // maximum number of plotted curves
   for (Diagnosis& d : each) {
-    const auto n = static_cast<double>(d.samples), m = static_cast<double>(samples);
     all.chi2_per_sample_before =
-        (m * all.chi2_per_sample_before + n * d.chi2_per_sample_before) / (m + n);
+        weighted_mean(all.chi2_per_sample_before, all.samples, d.chi2_per_sample_before, d.samples);
     all.chi2_per_sample_after =
-        (m * all.chi2_per_sample_after + n * d.chi2_per_sample_after) / (m + n);
-    samples += d.samples;
+        weighted_mean(all.chi2_per_sample_after, all.samples, d.chi2_per_sample_after, d.samples);
+    all.samples += d.samples;
     add_rms(*d.holdout, *all.holdout);
     all.confidence = std::min(all.confidence, d.confidence);
     if (d.verdict == Verdict::consistent) continue;
@@ -338,7 +342,6 @@ Diagnosis of_all_curves(std::vector<Diagnosis> each) {
     for (std::string& warning : d.warnings) all.warnings.push_back(std::move(warning));
   }
   if (differing == 0) all.series = std::move(each.front().series);
-  all.samples = samples;
   all.where.channels.push_back({"current_A", all.chi2_per_sample_before});
   all.holdout->explained_fraction =
       explained_fraction(all.holdout->chi2_per_sample_before, all.holdout->chi2_per_sample_after,
@@ -366,17 +369,14 @@ void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun
   const bool is_absolute = !stated.empty() && stated.front() > 0.0;
   if (ratio.empty() || (ratio.size() < fewest && !is_absolute)) return;
   const double unit = is_absolute ? -std::log(stated.front()) : median_of(ratio);
-  char text[400];
   if (ratio.size() < fewest) {
     constexpr double usual_error = 0.04;  // two standard errors of a sensor
     const double off = median_of(ratio) - unit;
     if (std::abs(off) < usual_error) return;
-    std::snprintf(
-        text, sizeof text,
-        "light over irradiance_W_m2 is %.3f of that of the reference: angle of incidence, "
-        "dirt, spectrum or the sensor, not single cells",
-        std::exp(off));
-    d.warnings.emplace_back(text);
+    d.warnings.push_back(
+        printed("light over irradiance_W_m2 is %.3f of that of the reference: angle of incidence, "
+                "dirt, spectrum or the sensor, not single cells",
+                std::exp(off)));
     return;
   }
   std::vector<double> slopes, off;
@@ -394,14 +394,12 @@ void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun
   // Standard error of the slope of a line through n points with unit spacing: scatter √(12/n³).
   const auto n = static_cast<double>(ratio.size());
   const double sigma = std::abs(slope) / std::max(1e-9, scatter * std::sqrt(12.0 / (n * n * n)));
-  std::snprintf(
-      text, sizeof text,
-      "light over irradiance_W_m2%s goes from %.3f at the first curve to %.3f at the last "
-      "(a line over their order, %.1f standard errors), and scatters by %.2g %%: angle of "
-      "incidence, dirt, spectrum or the sensor, not the cells",
-      is_absolute ? "" : ", over its median,", at(order.front()), at(order.back()), sigma,
-      100.0 * scatter);
-  d.warnings.emplace_back(text);
+  d.warnings.push_back(
+      printed("light over irradiance_W_m2%s goes from %.3f at the first curve to %.3f at the last "
+              "(a line over their order, %.1f standard errors), and scatters by %.2g %%: angle of "
+              "incidence, dirt, spectrum or the sensor, not the cells",
+              is_absolute ? "" : ", over its median,", at(order.front()), at(order.back()), sigma,
+              100.0 * scatter));
   constexpr double beyond_doubt = 4.0, far = 6.0;
   if (sigma > beyond_doubt) {
     const double moved = std::abs(slope) * (order.back() - order.front());
@@ -410,10 +408,9 @@ void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun
   for (size_t i = 0; i < ratio.size(); ++i) {
     if (off[i] < far * scatter) continue;
     const ModuleRun& curve = curves[static_cast<size_t>(order[i])];
-    std::snprintf(text, sizeof text, "%s: light over irradiance_W_m2 is %.3f, off that line",
-                  std::filesystem::path(curve.sweep.name).filename().string().c_str(),
-                  std::exp(ratio[i] - unit));
-    d.warnings.emplace_back(text);
+    d.warnings.push_back(printed("%s: light over irradiance_W_m2 is %.3f, off that line",
+                                 std::filesystem::path(curve.sweep.name).filename().c_str(),
+                                 std::exp(ratio[i] - unit)));
   }
 }
 
@@ -421,10 +418,9 @@ void judge_references(const ModuleDesign& design, const ModuleNominal& nominal,
                       const std::vector<LightRecording>& recordings, Diagnosis& d) {
   const bool own = is_its_own_reference(design, recordings);
   const bool uneven = !design.references.empty() && nominal.misfit > even_misfit;
-  char percent[40];
-  std::snprintf(percent, sizeof percent, "%.2g %%", 100.0 * nominal.misfit);
+  const std::string percent = printed("%.2g %%", 100.0 * nominal.misfit);
   if (uneven) {
-    d.warnings.push_back(std::string("one diode leaves ") + percent +
+    d.warnings.push_back("one diode leaves " + percent +
                          " of the short-circuit current of the reference itself, where even light "
                          "on like cells leaves 0.1 to 0.5 %: part of it may be shaded or damaged, "
                          "and what the recordings share with it cannot be found");
@@ -436,8 +432,8 @@ void judge_references(const ModuleDesign& design, const ModuleNominal& nominal,
   }
   if (!own || !uneven || d.verdict != Verdict::consistent) return;
   d.verdict = Verdict::unexplained;
-  d.because = std::string("the curve is its own reference, and one diode describes it only to ") +
-              percent + " of its short-circuit current";
+  d.because = "the curve is its own reference, and one diode describes it only to " + percent +
+              " of its short-circuit current";
 }
 
 }  // namespace photorque

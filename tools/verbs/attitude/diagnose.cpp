@@ -8,7 +8,6 @@
 #include <optional>
 #include <set>
 
-#include "attitude/recordings/named_columns.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/parse.h"
@@ -178,9 +177,7 @@ DiagnosisRun diagnose_module_curves(const RunOptions& options, const Settings& r
                                         read_light(holdout_paths, {}, design.reading, provenance);
   refuse_absent_columns(own_table(root, "recording", false),
                         absent_columns(design.references, recordings, holdouts));
-  ModuleDiagnoseOptions how;
-  how.threads = options.threads;
-  Diagnosis diagnosis = diagnose_module(design, recordings, holdouts, how);
+  Diagnosis diagnosis = diagnose_module(design, recordings, holdouts, options.threads);
   return {std::move(diagnosis), std::move(provenance), options.experiment,
           with_overrides(text, options.all_overrides()), true};
 }
