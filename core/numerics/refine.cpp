@@ -75,17 +75,18 @@ class RotationTableBuilder {
       table_.channels_ = sample.value.size();
       const size_t count = 1 + static_cast<size_t>(*std::ranges::max_element(groups));
       RotationTableError& error = table_.error_;
-      for (auto* all : {&error.scale, &error.rms, &error.max, &error.noise})
+      for (auto* all : {&error.scale, &error.rms, &error.max, &error.noise, &noise_squares_}) {
         all->assign(count, 0.0);
+      }
+      noise_counts_.assign(count, 0);
     }
     for (size_t c = 0; c < sample.value.size(); ++c) {
       if (!std::isfinite(sample.value[c])) throw NumericalError("light that is no finite number");
-      double& scale = table_.error_.scale[static_cast<size_t>(groups[c])];
+      const auto group = static_cast<size_t>(groups[c]);
+      double& scale = table_.error_.scale[group];
       scale = std::max(scale, std::abs(sample.value[c]));
-      noise_squares_.resize(table_.error_.noise.size(), 0.0);
-      noise_counts_.resize(table_.error_.noise.size(), 0);
-      noise_squares_[static_cast<size_t>(groups[c])] += sample.error[c] * sample.error[c];
-      ++noise_counts_[static_cast<size_t>(groups[c])];
+      noise_squares_[group] += sample.error[c] * sample.error[c];
+      ++noise_counts_[group];
     }
   }
 
