@@ -215,9 +215,8 @@ Vec3 force_of(Scene scene, const Vec3& light) {
   const Beam beam = fixtures::beam(emitter, -5 * size * light, light);
   const fixtures::TotalWrench wrench;
   const Receiver* const receivers[] = {&wrench};
-  TraceOptions options;
-  options.rays = 1 << 17;
-  const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
+  const TraceResult result =
+      trace(traceable, {}, std::span(&beam, 1), receivers, {.rays = 1 << 17});
   Vec3 force;
   for (size_t k = 0; k < 3; ++k) {
     force[static_cast<Eigen::Index>(k)] = result.sums[0].estimate(k).value;

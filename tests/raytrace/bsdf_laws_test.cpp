@@ -203,9 +203,8 @@ TEST(SurfaceLaws, PowerAndMomentumBalanceAtEveryBounce) {
           fixtures::beam(std::make_shared<fixtures::ParallelBeam>(2.0, 0.5), -2 * light, light);
       const fixtures::TotalWrench wrench;
       const Receiver* const receivers[] = {&wrench};
-      TraceOptions options;
-      options.rays = 1 << 16;
-      const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
+      const TraceResult result =
+          trace(traceable, {}, std::span(&beam, 1), receivers, {.rays = 1 << 16});
       const PowerBalance& power_balance = result.power_balance;
       EXPECT_LE(power_balance.closure, 1e-12) << kind.name;
       EXPECT_NEAR(power_balance.absorbed_W.value,

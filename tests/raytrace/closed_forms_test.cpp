@@ -27,14 +27,11 @@ Outcome illuminate(Scene scene, const Vec3& direction, uint64_t rays = 1 << 20, 
   const double side = 2 * radius;
   const auto emitter = std::make_shared<ParallelBeam>(speed_of_light_m_s * side * side, side);
   const Beam beam = fixtures::beam(emitter, -10 * radius * direction.normalized(), direction);
-  TraceOptions options;
-  options.rays = rays;
-  options.seed = seed;
-  options.cutoff = 1e-14;
-  options.max_depth = 2000;
   const fixtures::TotalWrench wrench;
   const Receiver* const receivers[] = {&wrench};
-  const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
+  const TraceResult result =
+      trace(traceable, {}, std::span(&beam, 1), receivers,
+            {.rays = rays, .seed = seed, .max_depth = 2000, .cutoff = 1e-14});
   Outcome outcome{{}, {}, result.power_balance};
   for (size_t k = 0; k < 3; ++k) {
     outcome.force[k] = result.sums[0].estimate(k);
@@ -145,9 +142,7 @@ TEST(CornerCube, ReturnsLightAlongItself) {
   const double power = 1.0;
   const auto emitter = std::make_shared<ParallelBeam>(power, 0.1, ParallelBeam::Shape::disc);
   const Beam beam = fixtures::beam(emitter, Vec3(0.3, 0.3, 0.3) - 3 * d, d);
-  TraceOptions options;
-  options.rays = 1 << 18;
-  const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, options);
+  const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, {.rays = 1 << 18});
   const Vec3 exact = 2 * power / speed_of_light_m_s * d;
   expect_vector(result.power_balance.force_N, exact, power / speed_of_light_m_s);
   EXPECT_NEAR(result.power_balance.escaped_W.value, power, 1e-9);
@@ -198,11 +193,8 @@ TEST(LambertianCavity, EffectiveReflectance) {
     const TraceableScene traceable(std::move(scene));
     const auto emitter = std::make_shared<ParallelBeam>(1.0, 0.3, ParallelBeam::Shape::disc);
     const Beam beam = fixtures::beam(emitter, Vec3(0, 0, 5), Vec3(0, 0, -1));
-    TraceOptions options;
-    options.rays = 1 << 17;
-    options.max_depth = 1000;
-    options.cutoff = 1e-12;
-    const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, options);
+    const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {},
+                                     {.rays = 1 << 17, .max_depth = 1000, .cutoff = 1e-12});
     const double f = (1 + mouth_z) / 2;  // wall fraction of the sphere
     const double exact = reflectance * (1 - f) / (1 - reflectance * f);
     const Estimate escaped = result.power_balance.escaped_W;
@@ -224,10 +216,8 @@ class EvenCone final : public Emitter {
     for (int i = 0; i < ray_block; ++i) {
       const double z = 1 - (1 - low_) * sobol_fraction(samples.bits[2][i]);
       const double phi = 2 * pi * sobol_fraction(samples.bits[3][i]);
-      for (size_t k = 0; k < 3; ++k) rays.origin_m[k][i] = 0.0;
-      rays.direction[0][i] = std::sqrt(1 - z * z) * std::cos(phi);
-      rays.direction[1][i] = std::sqrt(1 - z * z) * std::sin(phi);
-      rays.direction[2][i] = z;
+      const double across = std::sqrt(1 - z * z);
+      fixtures::set_ray(rays, i, Vec3::Zero(), {across * std::cos(phi), across * std::sin(phi), z});
     }
   }
   double relative_intensity(double a) const override { return std::cos(a) >= low_ ? 1.0 : 0.0; }
@@ -246,9 +236,7 @@ TEST(PointSource, SquareCatchesItsSolidAngle) {
     const TraceableScene traceable(std::move(scene));
     const Beam beam =
         fixtures::beam(std::make_shared<EvenCone>(half_angle), Vec3(0, 0, height), Vec3(0, 0, -1));
-    TraceOptions options;
-    options.rays = 1 << 22;
-    const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, options);
+    const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, {.rays = 1 << 22});
     const double solid_angle = 4 * std::asin(side * side / (side * side + 4 * height * height));
     const double exact = solid_angle / (2 * pi * (1 - std::cos(half_angle)));
     EXPECT_TRUE(within(result.power_balance.absorbed_W, exact, exact))
