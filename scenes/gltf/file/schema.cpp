@@ -87,23 +87,21 @@ constexpr Field asset[] = {
     {.key = "minVersion", .shape = Shape::text},
 };
 
+constexpr Field byte_length = {.key = "byteLength",
+                               .shape = Shape::integer,
+                               .required = true,
+                               .low = 1,
+                               .high = largest_integer};
+
 constexpr Field buffer[] = {
-    {.key = "byteLength",
-     .shape = Shape::integer,
-     .required = true,
-     .low = 1,
-     .high = largest_integer},
+    byte_length,
     {.key = "uri", .shape = Shape::text},
 };
 
 constexpr Field buffer_view[] = {
     {.key = "buffer", .shape = Shape::reference, .required = true, .target = "buffers"},
     {.key = "byteOffset", .shape = Shape::integer, .low = 0, .high = largest_integer},
-    {.key = "byteLength",
-     .shape = Shape::integer,
-     .required = true,
-     .low = 1,
-     .high = largest_integer},
+    byte_length,
     {.key = "byteStride", .shape = Shape::integer, .low = 4, .high = 252, .multiple = 4},
     {.key = "target", .shape = Shape::integer, .choices = "34962 34963"},
 };
