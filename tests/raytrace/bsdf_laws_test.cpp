@@ -193,10 +193,8 @@ TEST(SurfaceLaws, RaysCarryTheMeanDepartureAway) {
 TEST(SurfaceLaws, PowerAndMomentumBalanceAtEveryBounce) {
   for (const SurfaceKind& kind : surface_kinds(0.7)) {
     for (const double cosine : {1.0, 0.3}) {
-      Scene scene;
-      fixtures::add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(4, 0, 0), Vec3(0, 4, 0)),
-                    kind.surface, "plate");
-      const TraceableScene traceable(std::move(scene));
+      const TraceableScene traceable(fixtures::scene_of_part(
+          fixtures::rectangle(Vec3::Zero(), Vec3(4, 0, 0), Vec3(0, 4, 0)), kind.surface, "plate"));
       const double sine = std::sqrt(1 - cosine * cosine);
       const Vec3 light(-sine, 0, -cosine);
       const Beam beam =

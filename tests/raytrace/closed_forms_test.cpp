@@ -61,12 +61,10 @@ void expect_vector(const std::array<Estimate, 3>& estimate, const Vec3& truth, d
 
 // A 2 m × 1 m plate whose normal leans by `tilt` from +z towards +x.
 Scene tilted_plate(double tilt, const OpticalSurface& surface) {
-  Scene scene;
-  add(scene,
+  return fixtures::scene_of_part(
       fixtures::rectangle(Vec3::Zero(), Vec3(2 * std::cos(tilt), 0, -2 * std::sin(tilt)),
                           Vec3(0, 1, 0)),
       surface, "plate");
-  return scene;
 }
 
 class FlatPlate : public ::testing::TestWithParam<int> {};
@@ -99,9 +97,10 @@ TEST(Sphere, ForceIsDiscTimesOnePlusFourNinthsDiffuse) {
   const double shadow = rings * std::sin(pi / rings);
   for (const auto& [specular, diffuse] :
        {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {0.4, 0.4}}) {
-    Scene scene;
-    add(scene, fixtures::sphere(1.0, rings), grey_surface("s", specular, diffuse), "sphere");
-    const Outcome got = illuminate(std::move(scene), Vec3(0, 0, -1), 1 << 20);
+    const Outcome got =
+        illuminate(fixtures::scene_of_part(fixtures::sphere(1.0, rings),
+                                           grey_surface("s", specular, diffuse), "sphere"),
+                   Vec3(0, 0, -1), 1 << 20);
     const double exact = -shadow * (1 + 4.0 / 9.0 * diffuse);
     expect_vector(got.force, Vec3(0, 0, exact), pi);
     if (diffuse > 0.0) {  // as if it were a flat plate
@@ -188,9 +187,8 @@ TEST(LambertianCavity, EffectiveReflectance) {
     return z > mouth_z;
   });
   for (const double reflectance : {0.3, 0.9}) {
-    Scene scene;
-    add(scene, wall, grey_surface("wall", 0, reflectance), "wall");
-    const TraceableScene traceable(std::move(scene));
+    const TraceableScene traceable(
+        fixtures::scene_of_part(wall, grey_surface("wall", 0, reflectance), "wall"));
     const auto emitter = std::make_shared<ParallelBeam>(1.0, 0.3, ParallelBeam::Shape::disc);
     const Beam beam = fixtures::beam(emitter, Vec3(0, 0, 5), Vec3(0, 0, -1));
     const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {},
@@ -230,10 +228,9 @@ TEST(PointSource, SquareCatchesItsSolidAngle) {
   const double side = 0.5;
   for (const double height : {1.0, 2.0, 4.0}) {
     const double half_angle = 1.1 * std::atan(side / std::numbers::sqrt2 / height);
-    Scene scene;
-    add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
-        grey_surface("black", 0, 0), "square");
-    const TraceableScene traceable(std::move(scene));
+    const TraceableScene traceable(fixtures::scene_of_part(
+        fixtures::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
+        grey_surface("black", 0, 0), "square"));
     const Beam beam =
         fixtures::beam(std::make_shared<EvenCone>(half_angle), Vec3(0, 0, height), Vec3(0, 0, -1));
     const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, {.rays = 1 << 22});
@@ -251,10 +248,8 @@ TEST(PointSource, SquareCatchesItsSolidAngle) {
 // Cube 2 × 2 × 2 m, the validation cases of PyRASE, F/P in m².
 TEST(Cube, PyraseValidationCases) {
   const auto cube = [](double specular, double diffuse) {
-    Scene scene;
-    add(scene, fixtures::box(Vec3(-1, -1, -1), Vec3(1, 1, 1)), grey_surface("s", specular, diffuse),
-        "cube");
-    return scene;
+    return fixtures::scene_of_part(fixtures::box(Vec3(-1, -1, -1), Vec3(1, 1, 1)),
+                                   grey_surface("s", specular, diffuse), "cube");
   };
   expect_vector(illuminate(cube(0, 0.8), Vec3(-1, 0, 0)).force, Vec3(-6.1333333333, 0, 0), 4);
   expect_vector(illuminate(cube(0.8, 0), Vec3(-1, 0, 0)).force, Vec3(-7.2, 0, 0), 4);
@@ -267,10 +262,10 @@ TEST(Cube, OpposingLightBalances) {
   Vec3 sum = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
     for (const double sign : {-1.0, 1.0}) {
-      Scene scene;
-      add(scene, fixtures::box(Vec3(-1, -0.5, -0.2), Vec3(1, 0.5, 0.2)),
-          grey_surface("s", 0.2, 0.3), "box");
-      const Outcome got = illuminate(std::move(scene), sign * Vec3::Unit(k), 1 << 20);
+      const Outcome got =
+          illuminate(fixtures::scene_of_part(fixtures::box(Vec3(-1, -0.5, -0.2), Vec3(1, 0.5, 0.2)),
+                                             grey_surface("s", 0.2, 0.3), "box"),
+                     sign * Vec3::Unit(k), 1 << 20);
       for (int j = 0; j < 3; ++j) sum[j] += got.force[static_cast<size_t>(j)].value;
     }
   }

@@ -67,13 +67,10 @@ double moment_m(double low, double high) {
 Scene tilted_rectangle(const OpticalSurface& surface) {
   const Vec3 centre(0.5 * (shadow_x_low + shadow_x_high), 0.5 * (shadow_y_low + shadow_y_high),
                     plate_height_m + plate_slope * 0.5 * (shadow_x_low + shadow_x_high));
-  Scene scene;
-  fixtures::add(
-      scene,
+  return fixtures::scene_of_part(
       fixtures::rectangle(centre, (shadow_x_high - shadow_x_low) * Vec3(1, 0, plate_slope),
                           Vec3(0, shadow_y_high - shadow_y_low, 0)),
       surface, "rectangle");
-  return scene;
 }
 
 // Power, force along x and z (along y there is none), torque, bins; where a fraction `s` is

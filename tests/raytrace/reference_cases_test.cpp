@@ -221,10 +221,9 @@ TEST(FacetedSpacecraft, ForceAndTorqueOfSixteenArticulations) {
     for (const Facet& facet : facets(c.theta1_deg * degree_rad, c.theta2_deg * degree_rad)) {
       if (facet.normal.dot(light) >= -1e-12) continue;  // lit on the front only
       const Vec3 u = facet.normal.unitOrthogonal() * std::sqrt(facet.area_m2);
-      Scene scene;
-      add(scene, fixtures::rectangle(facet.centre_m, u, facet.normal.cross(u)),
-          grey_surface("facet", 0.9, 0.1), "facet");
-      const TraceableScene traceable(std::move(scene));
+      const TraceableScene traceable(
+          fixtures::scene_of_part(fixtures::rectangle(facet.centre_m, u, facet.normal.cross(u)),
+                                  grey_surface("facet", 0.9, 0.1), "facet"));
       // Light that falls on a parallelogram 1.25 times the facet, edges parallel to the facet's.
       const RigidTransform lab_from_beam = frame_looking_along(light, facet.centre_m - 20 * light);
       const Quat beam_from_lab = lab_from_beam.rotation.conjugate();

@@ -152,6 +152,12 @@ inline uint32_t add(Scene& scene, Mesh mesh, const OpticalSurface& surface,
   return static_cast<uint32_t>(scene.instances.size() - 1);
 }
 
+inline Scene scene_of_part(Mesh mesh, const OpticalSurface& surface, const std::string& node) {
+  Scene scene;
+  add(scene, std::move(mesh), surface, node);
+  return scene;
+}
+
 // A beam from `origin_m` along `direction`.
 inline Beam beam(std::shared_ptr<const Emitter> emitter, const Vec3& origin_m,
                  const Vec3& direction) {

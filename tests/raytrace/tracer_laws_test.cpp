@@ -214,10 +214,9 @@ TEST(Transmission, GoesStraightOnThroughBothSides) {
 
 // A source at 1e9 m must hit what it is aimed at: it is brought near in double precision.
 TEST(FarSource, KeepsItsAim) {
-  Scene scene;
-  add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0)),
-      grey_surface("black", 0, 0), "plate");
-  const TraceableScene traceable(std::move(scene));
+  const TraceableScene traceable(
+      fixtures::scene_of_part(fixtures::rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0)),
+                              grey_surface("black", 0, 0), "plate"));
   const Vec3 d = Vec3(1, 2, -3).normalized();
   const Beam beam = fixtures::beam(std::make_shared<fixtures::ParallelBeam>(1.0, 0.1), -1e9 * d, d);
   const fixtures::TotalWrench wrench;

@@ -22,10 +22,9 @@ TEST(GaussianBeam, EncircledPowerOnASquareMatchesClosedForm) {
                                  {"direction", test::vector_node(0, 0, -1)}});
   ASSERT_EQ(beams.size(), 1u);
   for (const double side : {0.1, 0.2, 0.3}) {
-    Scene scene;
-    fixtures::add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
-                  grey_surface("black", 0, 0), "square");
-    const TraceableScene traceable(std::move(scene));
+    const TraceableScene traceable(fixtures::scene_of_part(
+        fixtures::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
+        grey_surface("black", 0, 0), "square"));
     const Estimate power =
         trace(traceable, {}, beams, {}, {.rays = 1 << 21}).power_balance.absorbed_W;
     const double exact = 2.0 * std::pow(std::erf(side / (std::numbers::sqrt2 * w)), 2);

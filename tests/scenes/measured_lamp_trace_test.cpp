@@ -71,11 +71,9 @@ TEST(IesLamp, PowerOnASquareMatchesClosedForm) {
   const std::vector<Beam> beams = lamp_over_origin(lambert_file("ies_on_a_square").parent_path());
   ASSERT_EQ(beams.size(), 1u);
   for (const double half : {0.1, 0.5, 2.0}) {
-    Scene scene;
-    fixtures::add(scene,
-                  fixtures::rectangle(Vec3::Zero(), Vec3(2 * half, 0, 0), Vec3(0, 2 * half, 0)),
-                  grey_surface("black", 0, 0), "square");
-    const TraceableScene traceable(std::move(scene));
+    const TraceableScene traceable(fixtures::scene_of_part(
+        fixtures::rectangle(Vec3::Zero(), Vec3(2 * half, 0, 0), Vec3(0, 2 * half, 0)),
+        grey_surface("black", 0, 0), "square"));
     const Estimate power =
         trace(traceable, {}, beams, {}, {.rays = 1 << 21}).power_balance.absorbed_W;
     const double exact = 2.0 * lambert_on_square(half);
