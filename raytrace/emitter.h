@@ -22,6 +22,11 @@ inline constexpr int ray_block = sobol_block;
 // Points of the unit hypercube as 32-bit fixed-point fractions (see sobol_fraction()).
 struct SampleBlock {
   alignas(64) std::array<std::array<uint32_t, ray_block>, sobol_dimensions> bits;
+
+  // Where sobol_points() writes them.
+  std::array<uint32_t*, sobol_dimensions> columns() {
+    return {bits[0].data(), bits[1].data(), bits[2].data(), bits[3].data()};
+  }
 };
 
 // Rays in the emitter's frame: origins in metres, directions of unit norm to 3e-7. Single
@@ -29,6 +34,9 @@ struct SampleBlock {
 struct RayBlock {
   alignas(64) std::array<std::array<float, ray_block>, 3> origin_m;
   alignas(64) std::array<std::array<float, ray_block>, 3> direction;
+
+  Vec3 origin_at_m(size_t i) const { return {origin_m[0][i], origin_m[1][i], origin_m[2][i]}; }
+  Vec3 direction_at(size_t i) const { return {direction[0][i], direction[1][i], direction[2][i]}; }
 };
 
 // A source of light in its own frame: z along the axis of the beam, origin at the aperture.

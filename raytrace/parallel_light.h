@@ -12,8 +12,8 @@ namespace photorque {
 class ParallelLight : public Emitter {
  public:
   explicit ParallelLight(double radius_m) : radius_m_(radius_m) {}
-  // Radius [m] of the lit sphere.
 
+  // Radius of the lit sphere.
   double radius_m() const { return radius_m_; }
 
   // Fills rays.direction from dimensions 2 and 3. The angle from the axis increases with dimension

@@ -9,6 +9,7 @@
 
 #include "core/product.h"
 #include "core/spectrum.h"
+#include "core/transform.h"
 
 namespace photorque {
 
@@ -39,6 +40,11 @@ struct Hits {
   std::array<Column<double>, max_bands> absorbed_W;  // per band
   // arriving momentum flow minus expected leaving flow, all bands
   std::array<Column<double>, 3> force_N;
+
+  Vec3 position_at_m(size_t i) const {
+    return {position_m[0][i], position_m[1][i], position_m[2][i]};
+  }
+  Vec3 force_at_N(size_t i) const { return {force_N[0][i], force_N[1][i], force_N[2][i]}; }
 };
 
 // Sums of the tracer for one receiver: one vector of bins per replicate. Each replicate is an

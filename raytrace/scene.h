@@ -43,6 +43,10 @@ struct Scene {
   std::vector<Instance> instances;
   Bands bands;
 
+  // The surface on one side of an instance.
+  const OpticalSurface& surface(const Instance& instance, bool front) const {
+    return surfaces[front ? instance.front_surface : instance.back_surface];
+  }
   // Box along the body axes around one part or all parts; empty if there are no vertices.
   Eigen::AlignedBox3d box_of(const Instance& instance) const;
   Eigen::AlignedBox3d box() const;

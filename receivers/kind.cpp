@@ -1,10 +1,11 @@
 #include "receivers/kind.h"
-#include "core/settings/settings.h"
 
 #include <cmath>
 #include <numeric>
 #include <set>
 #include <sstream>
+
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -57,9 +58,7 @@ std::string read_name(const Settings& settings, const std::string& otherwise) {
 
 int read_bins(const Settings& settings, double bins) {
   if (!(bins >= 1 && bins <= max_grid_bins && bins == std::floor(bins))) {
-    std::ostringstream found;
-    found << bins;
-    throw settings.error(grid_key::bins, found.str(),
+    throw settings.error(grid_key::bins, printed("%g", bins),
                          "two whole numbers from 1 to " + std::to_string(max_grid_bins));
   }
   return static_cast<int>(bins);

@@ -103,9 +103,7 @@ void measure_areas(SurfaceGrid& grid, const Scene& scene, std::span<const Surfac
     const double face_seen_m2 = std::abs(face.area_body_m2.dot(grid.normal_body));
     split_over_cells(corners_in_bins(grid, scene, face), grid.width, grid.height,
                      [&](int column, int row, double fraction) {
-                       const size_t bin =
-                           static_cast<size_t>(row) * static_cast<size_t>(grid.width) +
-                           static_cast<size_t>(column);
+                       const size_t bin = grid.bin_at(column, row);
                        grid.area_m2[bin] += fraction * area_m2;
                        seen_m2[bin] += fraction * face_seen_m2;
                      });
@@ -125,9 +123,8 @@ void measure_areas(SurfaceGrid& grid, const Scene& scene, std::span<const Surfac
 
 size_t nearest_bin(const SurfaceGrid& grid, const Vec2& uv) {
   const Vec2 cell = to_cells(grid, uv);
-  const auto column = static_cast<size_t>(std::clamp(cell.x(), 0.0, grid.width - 1.0));
-  const auto row = static_cast<size_t>(std::clamp(cell.y(), 0.0, grid.height - 1.0));
-  return row * static_cast<size_t>(grid.width) + column;
+  return grid.bin_at(static_cast<int>(std::clamp(cell.x(), 0.0, grid.width - 1.0)),
+                     static_cast<int>(std::clamp(cell.y(), 0.0, grid.height - 1.0)));
 }
 
 }  // namespace

@@ -65,6 +65,10 @@ struct SurfaceGrid {
   double overlapping_m2 = 0.0;
 
   size_t bins() const { return area_m2.size(); }
+  // Index of the bin in a column and row.
+  size_t bin_at(int column, int row) const {
+    return static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column);
+  }
   // Sum of area_m2.
   double total_area_m2() const;
 };

@@ -42,15 +42,9 @@ void TorqueMapReceiver::score(const Hits& hits, std::span<double> sums) const {
   const Vec3 about_m = about_body_m_;
   const size_t offset = hits.depth[0] == 0 ? 0 : direct_entries();
   for_each_binned(binned, [&](size_t hit, size_t index) {
-    const Vec3 f = as_published
-                       ? force_as_published_N(hits, hit)
-                       : Vec3(hits.force_N[0][hit], hits.force_N[1][hit], hits.force_N[2][hit]);
-    const Vec3 r(hits.position_m[0][hit], hits.position_m[1][hit], hits.position_m[2][hit]);
-    const Vec3 torque = (r - about_m).cross(f);
-    double* bin = sums.data() + offset + index * axes;
-    bin[0] += torque.x();
-    bin[1] += torque.y();
-    bin[2] += torque.z();
+    const Vec3 f = as_published ? force_as_published_N(hits, hit) : hits.force_at_N(hit);
+    Eigen::Map<Vec3>(sums.data() + offset + index * axes) +=
+        (hits.position_at_m(hit) - about_m).cross(f);
   });
 }
 

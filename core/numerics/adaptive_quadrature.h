@@ -9,6 +9,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/constants.h"
+
 namespace photorque {
 
 // A value with an estimate of its error, both of one unit.
@@ -78,18 +80,17 @@ template <typename Function>
 auto integrate_half_turn(const Function& f, double tolerance) {
   using Value = std::decay_t<decltype(f(0.0))>;
   constexpr int most = 64;
-  constexpr double turn = 3.14159265358979323846;
-  Value sum = f(0.5 * turn);
-  Value before = 0.5 * turn * sum;
+  Value sum = f(0.5 * pi);
+  Value before = 0.5 * pi * sum;
   for (int steps = 4; steps <= most; steps *= 2) {
-    const double step = turn / steps;
+    const double step = pi / steps;
     for (int i = 1; i < steps; i += 2) sum += f(i * step);
     const Value now = step * sum;
     const double change = size_of(Value(now - before));
     if (change <= tolerance) return Integral<Value>{now, change};
     before = now;
   }
-  return integrate_adaptively(f, 0.0, turn, tolerance);
+  return integrate_adaptively(f, 0.0, pi, tolerance);
 }
 
 }  // namespace photorque

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include "core/constants.h"
 #include "core/errors.h"
@@ -37,28 +36,27 @@ class RotationTableBuilder {
   static constexpr int32_t lattice = 1 << 20;
   static constexpr int max_level = 12;
 
-  // half, lattice x and y, and the turn ψ in units of 2^−20 of the period.
-  using Key = std::tuple<int, int32_t, int32_t, int32_t>;
-
-  struct Deviation {
-    double worst = 0.0;  // relative to the allowed error; > 1 fails
+  // An attitude on the lattice; the turn ψ is in units of 2^−20 of the period.
+  struct Key {
+    int half;
+    int32_t x, y, turn;
+    auto operator<=>(const Key&) const = default;
   };
 
   void begin() {
-    const double angle = options_.max_angle_rad;
-    both_halves_ = angle > 0.5 * pi;
+    both_halves_ = options_.max_angle_rad > 0.5 * pi;
+    reach_ = radius_at(std::min(options_.max_angle_rad, 0.5 * pi));
     table_.axis_from_lab_ = options_.axis_from_lab;
     // Squares around the discs, slightly wider so that the rim of the disc is inside.
-    table_.half_width_ = 1.0001 * radius_at(std::min(angle, 0.5 * pi));
+    table_.half_width_ = 1.0001 * reach_;
     table_.twists_ = 2;
   }
 
   double coordinate(int32_t at) const { return table_.half_width_ * (2.0 * at / lattice - 1.0); }
 
   Quat attitude(const Key& key) const {
-    const auto& [half, x, y, turn] = key;
-    const double twist = 2.0 * pi / table_.fold_ * turn / lattice;
-    return attitude(RotationPoint{half, coordinate(x), coordinate(y), twist});
+    const double twist = 2.0 * pi / table_.fold_ * key.turn / lattice;
+    return attitude(RotationPoint{key.half, coordinate(key.x), coordinate(key.y), twist});
   }
   Quat attitude(const RotationPoint& point) const {
     return options_.axis_from_lab.conjugate() * rotation_at(point);
@@ -77,17 +75,18 @@ class RotationTableBuilder {
       table_.channels_ = sample.value.size();
       const size_t count = 1 + static_cast<size_t>(*std::ranges::max_element(groups));
       RotationTableError& error = table_.error_;
-      for (auto* all : {&error.scale, &error.rms, &error.max, &error.noise})
+      for (auto* all : {&error.scale, &error.rms, &error.max, &error.noise, &noise_squares_}) {
         all->assign(count, 0.0);
+      }
+      noise_counts_.assign(count, 0);
     }
     for (size_t c = 0; c < sample.value.size(); ++c) {
       if (!std::isfinite(sample.value[c])) throw NumericalError("light that is no finite number");
-      double& scale = table_.error_.scale[static_cast<size_t>(groups[c])];
+      const auto group = static_cast<size_t>(groups[c]);
+      double& scale = table_.error_.scale[group];
       scale = std::max(scale, std::abs(sample.value[c]));
-      noise_squares_.resize(table_.error_.noise.size(), 0.0);
-      noise_counts_.resize(table_.error_.noise.size(), 0);
-      noise_squares_[static_cast<size_t>(groups[c])] += sample.error[c] * sample.error[c];
-      ++noise_counts_[static_cast<size_t>(groups[c])];
+      noise_squares_[group] += sample.error[c] * sample.error[c];
+      ++noise_counts_[group];
     }
   }
 
@@ -113,8 +112,7 @@ class RotationTableBuilder {
   // An attitude of the domain, uniform in p.
   RotationPoint random_point(uint64_t index) const {
     RotationPoint point;
-    const double reach = radius_at(std::min(options_.max_angle_rad, 0.5 * pi));
-    const double radius = reach * std::sqrt(uniform(index, 0));
+    const double radius = reach_ * std::sqrt(uniform(index, 0));
     const double around = 2.0 * pi * uniform(index, 1);
     point.x = radius * std::cos(around);
     point.y = radius * std::sin(around);
@@ -247,18 +245,12 @@ class RotationTableBuilder {
     for (size_t k = 0; k < count; ++k) {
       const int32_t step = cell.width / (2 * degree);
       Key key = node_key(cell, 0, (k * 5 + static_cast<size_t>(cell.level)) % table_.twists_);
-      std::get<1>(key) = cell.x + places[k][0] * step;
-      std::get<2>(key) = cell.y + places[k][1] * step;
-      if (inside(std::get<0>(key), std::get<1>(key), std::get<2>(key))) keys.push_back(key);
+      key.x = cell.x + places[k][0] * step;
+      key.y = cell.y + places[k][1] * step;
+      // Only attitudes within the largest angle.
+      if (std::hypot(coordinate(key.x), coordinate(key.y)) <= reach_) keys.push_back(key);
     }
     return keys;
-  }
-
-  // Whether a point of the square is an attitude within the largest angle.
-  bool inside(int half, int32_t x, int32_t y) const {
-    const double radius = std::hypot(coordinate(x), coordinate(y));
-    if (half == 1) return radius <= radius_at(0.5 * pi);
-    return radius <= radius_at(std::min(options_.max_angle_rad, 0.5 * pi));
   }
 
   // Whether a cell contains an attitude within the largest angle.
@@ -266,8 +258,7 @@ class RotationTableBuilder {
     const auto nearest = [&](int32_t from, int32_t width) {
       return coordinate(std::clamp(lattice / 2, from, from + width));
     };
-    const double radius = std::hypot(nearest(cell.x, cell.width), nearest(cell.y, cell.width));
-    return radius <= radius_at(std::min(options_.max_angle_rad, 0.5 * pi));
+    return std::hypot(nearest(cell.x, cell.width), nearest(cell.y, cell.width)) <= reach_;
   }
 
   void sample(const std::set<Key>& wanted) {
@@ -289,13 +280,8 @@ class RotationTableBuilder {
     box.node_y = box.y;
     box.node_width = box.width;
     for (size_t node = 0; node < RotationTable::nodes; ++node) {
-      const Key first = node_key(cell, node, 0);
-      const auto place =
-          std::make_tuple(std::get<0>(first), std::get<1>(first), std::get<2>(first));
-      const auto [at, fresh] = index_.emplace(place, index_.size());
-      if (fresh) {
-        add_harmonics(cell, node);
-      }
+      const auto [at, fresh] = index_.emplace(node_key(cell, node, 0), index_.size());
+      if (fresh) add_harmonics(cell, node);
       box.sample[node] = static_cast<uint32_t>(at->second);
     }
   }
@@ -322,10 +308,6 @@ class RotationTableBuilder {
 
   void make_roots() {
     std::set<Key> wanted;
-    table_.boxes_.clear();
-    table_.values_.clear();
-    index_.clear();
-    leaves_.clear();
     for (int half = 0; half < (both_halves_ ? 2 : 1); ++half) {
       Cell cell{.half = half, .box = table_.boxes_.size()};
       table_.roots_[static_cast<size_t>(half)] = static_cast<int32_t>(cell.box);
@@ -382,10 +364,11 @@ class RotationTableBuilder {
     pending_ = parts;
   }
 
-  double excess_at(const Key& key) const {
+  // The interpolated values of all channels.
+  std::vector<double> value_at(const Quat& attitude) const {
     std::vector<double> value(table_.channels_);
-    table_.at(attitude(key), 0, value);
-    return excess(value, known_.at(key), 1.0);
+    table_.at(attitude, 0, value);
+    return value;
   }
 
   // Refines level by level. If `max_samples` does not suffice, the worst leaves are cut first.
@@ -400,7 +383,9 @@ class RotationTableBuilder {
       std::vector<std::pair<double, Cell>> failing;
       for (const Cell& cell : pending_) {
         double worst = 0.0;
-        for (const Key& key : test_keys(cell)) worst = std::max(worst, excess_at(key));
+        for (const Key& key : test_keys(cell)) {
+          worst = std::max(worst, excess(value_at(attitude(key)), known_.at(key), 1.0));
+        }
         if (worst > 1.0 && cell.level < max_level) failing.emplace_back(worst, cell);
       }
       split_affordable(failing);
@@ -447,9 +432,7 @@ class RotationTableBuilder {
       std::vector<std::pair<double, Cell>> failing;
       measure(attitudes, truths);
       for (size_t i = 0; i < points.size(); ++i) {
-        std::vector<double> value(table_.channels_);
-        table_.at(attitudes[i], 0, value);
-        const double worst = excess(value, truths[i], 1.0);
+        const double worst = excess(value_at(attitudes[i]), truths[i], 1.0);
         if (!(worst > 1.0)) continue;
         const Cell& leaf = leaf_at(points[i]);
         const bool again = std::ranges::any_of(
@@ -473,8 +456,7 @@ class RotationTableBuilder {
     std::vector<size_t> counts(error.scale.size(), 0);
     std::ranges::fill(error.max, 0.0);
     for (size_t i = 0; i < attitudes.size(); ++i) {
-      std::vector<double> value(table_.channels_);
-      table_.at(attitudes[i], 0, value);
+      const std::vector<double> value = value_at(attitudes[i]);
       for (size_t c = 0; c < value.size(); ++c) {
         const auto group = static_cast<size_t>(options_.group_of_channel[c]);
         const double difference = value[c] - truths[i].value[c];
@@ -498,9 +480,10 @@ class RotationTableBuilder {
   const std::function<void(size_t, const std::string&)>& progress_;
   RotationTable table_;
   bool both_halves_ = false;
+  double reach_ = 0.0;  // largest |p|
   size_t evaluated_ = 0;
   std::map<Key, RotationSample> known_;
-  std::map<std::tuple<int, int32_t, int32_t>, size_t> index_;  // place of a node's values
+  std::map<Key, size_t> index_;  // place of a node's values; the turn of the key is 0
   std::vector<Cell> leaves_, pending_;
   std::vector<double> noise_squares_;
   std::vector<size_t> noise_counts_;

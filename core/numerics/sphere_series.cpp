@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/constants.h"
 #include "core/numerics/linear.h"
 
 namespace photorque {
@@ -42,7 +43,7 @@ Eigen::VectorXd legendre(int degree, int m, double elevation_rad) {
 
 // Square root of the area that a node of each ring represents.
 Eigen::VectorXd ring_weights(std::span<const double> elevation_rad) {
-  constexpr double pole = 1.57079632679489661923;
+  constexpr double pole = 0.5 * pi;
   const size_t count = elevation_rad.size();
   Eigen::VectorXd weights(static_cast<Eigen::Index>(count));
   for (size_t e = 0; e < count; ++e) {

@@ -1,12 +1,11 @@
 #include "core/numerics/table.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/snapshot.h"
 
 namespace photorque {
 
@@ -72,7 +71,7 @@ struct Lagrange {
 };
 
 constexpr size_t max_twists = 64;
-constexpr int64_t most_repeats = 1000;  // maximum periods in a turn
+constexpr uint64_t most_repeats = 1000;  // maximum periods in a turn
 
 // Basis functions 1, cos θ, sin θ, cos 2θ, … with θ = fold · ψ, and their derivatives with respect
 // to ψ. The `count` numbers that are stored over ψ are their coefficients.
@@ -98,45 +97,6 @@ struct Harmonics {
     }
   }
 };
-
-template <class T>
-void put(std::string& bytes, const T& value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-struct ByteReader {
-  const std::string& bytes;
-  size_t at = 0;
-  bool good = true;
-
-  template <class T>
-  void get(T& value) {
-    if (!good || bytes.size() - at < sizeof value) {
-      good = false;
-      return;
-    }
-    std::memcpy(&value, bytes.data() + at, sizeof value);
-    at += sizeof value;
-  }
-  template <class T>
-  void get_all(std::vector<T>& values) {
-    uint64_t count = 0;
-    get(count);
-    if (!good || count > (bytes.size() - at) / sizeof(T)) {
-      good = false;
-      return;
-    }
-    values.resize(count);
-    if (count > 0) std::memcpy(values.data(), bytes.data() + at, count * sizeof(T));
-    at += count * sizeof(T);
-  }
-};
-
-template <class T>
-void put_all(std::string& bytes, const std::vector<T>& values) {
-  put(bytes, static_cast<uint64_t>(values.size()));
-  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-}
 
 }  // namespace
 
@@ -241,63 +201,38 @@ void RotationTable::at(const Quat& lab_from_body, size_t first, std::span<double
   }
 }
 
+void RotationTable::keep(Snapshot& snapshot) {
+  std::array<double, 4> axis = {axis_from_lab_.w(), axis_from_lab_.x(), axis_from_lab_.y(),
+                                axis_from_lab_.z()};
+  int64_t fold = fold_;
+  snapshot(axis, half_width_, channels_, twists_, leaves_);
+  snapshot.at_most(fold, most_repeats);
+  snapshot(roots_, boxes_, values_, error_.scale, error_.rms, error_.max, error_.noise,
+           error_.points);
+  axis_from_lab_ = Quat(axis[0], axis[1], axis[2], axis[3]);
+  fold_ = static_cast<int>(fold);
+}
+
 std::string RotationTable::bytes() const {
-  std::string bytes;
-  for (const double x : {axis_from_lab_.w(), axis_from_lab_.x(), axis_from_lab_.y(),
-                         axis_from_lab_.z(), half_width_}) {
-    put(bytes, x);
-  }
-  put(bytes, static_cast<uint64_t>(channels_));
-  put(bytes, static_cast<uint64_t>(twists_));
-  put(bytes, static_cast<uint64_t>(leaves_));
-  put(bytes, static_cast<int64_t>(fold_));
-  put(bytes, roots_);
-  put_all(bytes, boxes_);
-  put_all(bytes, values_);
-  for (const auto* all : {&error_.scale, &error_.rms, &error_.max, &error_.noise}) {
-    put_all(bytes, *all);
-  }
-  put(bytes, static_cast<uint64_t>(error_.points));
-  return bytes;
+  Snapshot snapshot;
+  RotationTable(*this).keep(snapshot);
+  return snapshot.bytes();
 }
 
 bool RotationTable::read(const std::string& bytes) {
-  ByteReader in{bytes};
-  double w = 0, x = 0, y = 0, z = 0;
-  uint64_t channels = 0, twists = 0, leaves = 0, points = 0;
-  int64_t fold = 1;
+  Snapshot snapshot(bytes);
   RotationTable table;
-  for (double* q : {&w, &x, &y, &z}) in.get(*q);
-  in.get(table.half_width_);
-  in.get(channels);
-  in.get(twists);
-  in.get(leaves);
-  in.get(fold);
-  in.get(table.roots_);
-  in.get_all(table.boxes_);
-  in.get_all(table.values_);
-  for (auto* all :
-       {&table.error_.scale, &table.error_.rms, &table.error_.max, &table.error_.noise}) {
-    in.get_all(*all);
-  }
-  in.get(points);
-  if (!in.good || in.at != bytes.size() || channels == 0 || twists == 0 || twists > max_twists) {
-    return false;
-  }
-  if (fold < 1 || fold > most_repeats) return false;
-  table.axis_from_lab_ = Quat(w, x, y, z);
-  table.channels_ = channels;
-  table.twists_ = twists;
-  table.leaves_ = leaves;
-  table.fold_ = static_cast<int>(fold);
-  table.error_.points = points;
+  table.keep(snapshot);
+  const size_t channels = table.channels_, twists = table.twists_;
+  if (!snapshot.is_whole() || channels == 0 || twists == 0 || twists > max_twists) return false;
+  if (table.fold_ < 1) return false;
   const auto boxes = static_cast<int64_t>(table.boxes_.size());
   for (const int32_t root : table.roots_) {
     if (root >= boxes) return false;
   }
   // These comparisons cannot overflow, whatever the bytes are.
   if (channels > table.values_.size()) return false;
-  const uint64_t samples = table.values_.size() / (twists * channels);
+  const size_t samples = table.values_.size() / (twists * channels);
   for (int64_t index = 0; index < boxes; ++index) {
     const Box& box = table.boxes_[static_cast<size_t>(index)];
     const int64_t children = box.children;

@@ -12,8 +12,6 @@
 // 5 values. Over ψ, a trigonometric polynomial goes through equidistant values in one period.
 // Samples of the function determine its number of periods in a turn, and whether it depends on ψ.
 // Between leaves of different size, the interpolant jumps by less than its error.
-// Samples of the function show its number of periods in a turn, and whether it depends on ψ.
-// Between leaves of different size, the interpolant jumps by less than its error.
 #pragma once
 
 #include <array>
@@ -27,6 +25,8 @@
 #include "core/transform.h"
 
 namespace photorque {
+
+class Snapshot;
 
 struct RotationPoint {
   int half = 0;  // 0: u within 90 deg of body +z; 1: of body −z, with body x turned by half a turn
@@ -133,6 +133,7 @@ class RotationTable {
     double twist_rad;
   };
   Place place(const Quat& lab_from_body, RotationSlopes* slopes) const;
+  void keep(Snapshot& snapshot);
 
   Quat axis_from_lab_ = Quat::Identity();
   double half_width_ = 0.0;  // half-width of the squares of p

@@ -25,6 +25,14 @@ struct Settings::Log {
   }
 };
 
+// The value of a node. InputError if it has another type.
+template <class Value>
+const Value& Settings::as(const SettingsNode& node, std::string_view key,
+                          const std::string& expected) const {
+  if (const auto* value = std::get_if<Value>(&node.value)) return *value;
+  throw InputError(node.where, full_name(key), describe(node), expected);
+}
+
 // A number with at most twelve significant digits, without trailing zeros.
 std::string format_setting(double x);
 

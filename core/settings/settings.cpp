@@ -1,9 +1,9 @@
 #include "core/settings/settings.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "core/settings/read_log.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -40,7 +40,6 @@ std::string misspelled(std::string_view key, const SettingsNode::Table& table,
 
 }  // namespace
 
-// The key of the same quantity as the user wrote it.
 std::string as_written(const SettingsNode& table, std::string_view key) {
   const auto& keys = std::get<SettingsNode::Table>(table.value);
   if (keys.contains(key)) return std::string(key);
@@ -55,10 +54,7 @@ std::string as_written(const SettingsNode& table, std::string_view key) {
 }
 
 std::string format_setting(double x) {
-  std::ostringstream out;
-  out.precision(12);
-  out << x;
-  return out.str();
+  return printed("%.12g", x);
 }
 
 std::string describe(const SettingsNode& node) {
@@ -142,44 +138,45 @@ InputLocation Settings::where() const {
 
 InputError Settings::error(std::string_view key, const std::string& found,
                            const std::string& expected) const {
-  const auto& table = std::get<SettingsNode::Table>(node_->value);
+  const SettingsNode::Table& table = written();
   const auto it = table.find(key);
   return {it == table.end() ? node_->where : it->second.where, full_name(key), found, expected};
 }
 
-const SettingsNode* Settings::find(std::string_view key, double* factor) const {
+const SettingsNode::Table& Settings::written() const {
+  return std::get<SettingsNode::Table>(node_->value);
+}
+
+Settings::Found Settings::find(std::string_view key) const {
   log_->asked[node_].insert(std::string(key));
-  const auto& table = std::get<SettingsNode::Table>(node_->value);
+  const SettingsNode::Table& table = written();
   const KeyUnit wanted = unit_of_key(key);
-  *factor = wanted.to_SI;
   const auto exact = table.find(key);
-  const SettingsNode* found = exact == table.end() ? nullptr : &exact->second;
+  Found found{exact == table.end() ? nullptr : &exact->second, wanted.to_SI};
   if (!wanted.unit.empty()) {
     for (const auto& [other_key, node] : table) {
       if (other_key == key) continue;
       const KeyUnit other = unit_of_key(other_key);
       if (other.stem != wanted.stem || other.dimension != wanted.dimension) continue;
-      if (found != nullptr) {
+      if (found.node != nullptr) {
         throw InputError(
             node.where, full_name(other_key),
             "the same quantity as " + std::string(exact == table.end() ? "another key" : key),
             "it once");
       }
-      found = &node;
-      *factor = other.to_SI;
+      found = {&node, other.to_SI};
     }
   }
-  if (found != nullptr) log_->read.insert(found);
+  if (found.node != nullptr) log_->read.insert(found.node);
   return found;
 }
 
-const SettingsNode& Settings::require(std::string_view key, double* factor,
-                                      const std::string& expected) const {
-  if (const SettingsNode* node = find(key, factor)) return *node;
+Settings::Found Settings::require(std::string_view key, const std::string& expected) const {
+  if (const Found found = find(key); found.node != nullptr) return found;
   // A key of the same stem with no or a wrong unit is the most likely mistake.
   const KeyUnit wanted = unit_of_key(key);
   if (!wanted.unit.empty()) {
-    for (const auto& [other_key, node] : std::get<SettingsNode::Table>(node_->value)) {
+    for (const auto& [other_key, node] : written()) {
       if (other_key == wanted.stem || unit_of_key(other_key).stem == wanted.stem) {
         throw InputError(node.where, full_name(other_key),
                          "a key without a unit of " + wanted.dimension,
@@ -187,28 +184,19 @@ const SettingsNode& Settings::require(std::string_view key, double* factor,
       }
     }
   }
-  throw InputError(
-      node_->where, full_name(key), "nothing",
-      expected + misspelled(key, std::get<SettingsNode::Table>(node_->value), log_->asked[node_]));
+  throw InputError(node_->where, full_name(key), "nothing",
+                   expected + misspelled(key, written(), log_->asked[node_]));
 }
 
 bool Settings::has(std::string_view key) const {
   log_->asked[node_].insert(std::string(key));
-  const auto& table = std::get<SettingsNode::Table>(node_->value);
-  if (table.contains(key)) return true;
-  const KeyUnit wanted = unit_of_key(key);
-  if (wanted.unit.empty()) return false;
-  return std::any_of(table.begin(), table.end(), [&](const auto& item) {
-    const KeyUnit other = unit_of_key(item.first);
-    return other.stem == wanted.stem && other.dimension == wanted.dimension;
-  });
+  return written().contains(as_written(*node_, key));
 }
 
 Settings Settings::table(std::string_view key) const {
-  double factor = 1.0;
-  const SettingsNode& node = require(key, &factor, "a table [" + full_name(key) + "]");
-  if (!node.is_table()) throw InputError(node.where, full_name(key), describe(node), "a table");
-  return {&node, root_, log_, full_name(key)};
+  const SettingsNode* node = require(key, "a table [" + full_name(key) + "]").node;
+  as<SettingsNode::Table>(*node, key, "a table");
+  return {node, root_, log_, full_name(key)};
 }
 
 Settings Settings::table_or_empty(std::string_view key) const {
@@ -216,20 +204,16 @@ Settings Settings::table_or_empty(std::string_view key) const {
 }
 
 std::vector<Settings> Settings::tables(std::string_view key) const {
-  double factor = 1.0;
-  const SettingsNode* node = find(key, &factor);
+  const SettingsNode* node = find(key).node;
   std::vector<Settings> all;
   if (node == nullptr) return all;
   if (node->is_table()) {
     all.push_back({node, root_, log_, full_name(key)});
     return all;
   }
-  const auto* array = std::get_if<SettingsNode::Array>(&node->value);
-  if (array == nullptr)
-    throw InputError(node->where, full_name(key), describe(*node),
-                     "tables [[" + full_name(key) + "]]");
-  for (size_t i = 0; i < array->size(); ++i) {
-    const SettingsNode& item = (*array)[i];
+  const auto& array = as<SettingsNode::Array>(*node, key, "tables [[" + full_name(key) + "]]");
+  for (size_t i = 0; i < array.size(); ++i) {
+    const SettingsNode& item = array[i];
     const std::string item_name = full_name(key) + "[" + std::to_string(i) + "]";
     if (!item.is_table()) throw InputError(item.where, item_name, describe(item), "a table");
     log_->read.insert(&item);
@@ -240,19 +224,18 @@ std::vector<Settings> Settings::tables(std::string_view key) const {
 
 std::vector<std::string> Settings::keys() const {
   std::vector<std::string> all;
-  for (const auto& [key, node] : std::get<SettingsNode::Table>(node_->value)) all.push_back(key);
+  for (const auto& [key, node] : written()) all.push_back(key);
   return all;
 }
 
 const SettingsNode& Settings::raw(std::string_view key) const {
-  double factor = 1.0;
-  const SettingsNode& node = require(key, &factor, "a value");
+  const SettingsNode& node = *require(key, "a value").node;
   log_->mark_all(node);
   return node;
 }
 
 void Settings::finish() const {
-  for (const auto& [key, node] : std::get<SettingsNode::Table>(node_->value)) {
+  for (const auto& [key, node] : written()) {
     if (!log_->read.contains(&node)) {
       const auto asked = log_->asked.find(node_);
       throw InputError(

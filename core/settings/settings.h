@@ -135,9 +135,17 @@ class Settings {
   struct Log;
   Settings(const SettingsNode* node, std::shared_ptr<const SettingsNode> root,
            std::shared_ptr<Log> log, std::string name);
-  const SettingsNode* find(std::string_view key, double* factor) const;
-  const SettingsNode& require(std::string_view key, double* factor,
-                              const std::string& expected) const;
+  // A value and the SI factor of the unit that its key names; null if there is no such key.
+  struct Found {
+    const SettingsNode* node = nullptr;
+    double factor = 1.0;
+  };
+  const SettingsNode::Table& written() const;
+  Found find(std::string_view key) const;
+  Found require(std::string_view key, const std::string& expected) const;
+  template <class Value>
+  const Value& as(const SettingsNode& node, std::string_view key,
+                  const std::string& expected) const;
   double to_number(const SettingsNode& node, std::string_view key, double factor,
                    Range range) const;
   Vec3 to_vector3(const SettingsNode& node, std::string_view key, double factor) const;

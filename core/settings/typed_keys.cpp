@@ -20,6 +20,12 @@ Key otherwise_is(Key key, SettingsNode otherwise) {
   return key;
 }
 
+Key with_keys(Key table, std::vector<Key> keys) {
+  table.required = false;
+  table.keys = std::move(keys);
+  return table;
+}
+
 }  // namespace
 
 NumberKey::operator Key() const {
@@ -77,16 +83,10 @@ Vec3 direction_of(const Settings& settings, const Vec3Key& key) {
 }
 
 Key TableKey::of(std::vector<Key> keys) const {
-  Key key = declared(Key::Type::table);
-  key.required = false;
-  key.keys = std::move(keys);
-  return key;
+  return with_keys(declared(Key::Type::table), std::move(keys));
 }
 Key TablesKey::of(std::vector<Key> keys) const {
-  Key key = declared(Key::Type::tables);
-  key.required = false;
-  key.keys = std::move(keys);
-  return key;
+  return with_keys(declared(Key::Type::tables), std::move(keys));
 }
 
 }  // namespace photorque

@@ -79,49 +79,43 @@ double Settings::to_number(const SettingsNode& node, std::string_view key, doubl
 }
 
 double Settings::number(std::string_view key, Range range) const {
-  double factor = 1.0;
-  const SettingsNode& node =
-      require(key, &factor, describe_range(range, unit_of_key(key).to_SI, unit_of_key(key).unit));
-  return to_number(node, key, factor, range);
+  const KeyUnit unit = unit_of_key(key);
+  const Found found = require(key, describe_range(range, unit.to_SI, unit.unit));
+  return to_number(*found.node, key, found.factor, range);
 }
 
 double Settings::number_or(std::string_view key, double otherwise_SI, Range range) const {
-  double factor = 1.0;
-  const SettingsNode* node = find(key, &factor);
-  return node == nullptr ? otherwise_SI : to_number(*node, key, factor, range);
+  const Found found = find(key);
+  if (found.node == nullptr) return otherwise_SI;
+  return to_number(*found.node, key, found.factor, range);
 }
 
 Uncertain Settings::uncertain(std::string_view key, Range range) const {
-  double factor = 1.0;
-  const SettingsNode& node = require(key, &factor, "a number or { value = ..., sigma = ... }");
-  if (!node.is_table()) return {to_number(node, key, factor, range), 0.0};
-  const Settings inner(&node, root_, log_, full_name(key));
-  double unused = 1.0;
-  const SettingsNode& value = inner.require("value", &unused, "a number");
-  const SettingsNode& sigma = inner.require("sigma", &unused, "a number >= 0");
+  const auto [node, factor] = require(key, "a number or { value = ..., sigma = ... }");
+  if (!node->is_table()) return {to_number(*node, key, factor, range), 0.0};
+  const Settings inner(node, root_, log_, full_name(key));
+  const SettingsNode& value = *inner.require("value", "a number").node;
+  const SettingsNode& sigma = *inner.require("sigma", "a number >= 0").node;
   return {inner.to_number(value, "value", factor, range),
           inner.to_number(sigma, "sigma", factor, Range::not_negative())};
 }
 
 Vec3 Settings::to_vector3(const SettingsNode& node, std::string_view key, double factor) const {
-  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
-  if (array == nullptr || array->size() != 3) {
-    throw InputError(node.where, full_name(key), describe(node), "an array of 3 numbers");
-  }
+  constexpr const char* expected = "an array of 3 numbers";
+  const auto& array = as<SettingsNode::Array>(node, key, expected);
+  if (array.size() != 3) throw InputError(node.where, full_name(key), describe(node), expected);
   log_->read.insert(&node);
   Vec3 v;
-  for (int i = 0; i < 3; ++i) v[i] = to_number((*array)[static_cast<size_t>(i)], key, factor, {});
+  for (int i = 0; i < 3; ++i) v[i] = to_number(array[static_cast<size_t>(i)], key, factor, {});
   return v;
 }
 
 UncertainVec3 Settings::uncertain_vector(std::string_view key) const {
-  double factor = 1.0;
-  const SettingsNode& node = require(key, &factor, "3 numbers or { value = [...], sigma = [...] }");
-  if (!node.is_table()) return {to_vector3(node, key, factor), Vec3::Zero()};
-  const Settings inner(&node, root_, log_, full_name(key));
-  double unused = 1.0;
-  const SettingsNode& value = inner.require("value", &unused, "an array of 3 numbers");
-  const SettingsNode& sigma = inner.require("sigma", &unused, "an array of 3 numbers >= 0");
+  const auto [node, factor] = require(key, "3 numbers or { value = [...], sigma = [...] }");
+  if (!node->is_table()) return {to_vector3(*node, key, factor), Vec3::Zero()};
+  const Settings inner(node, root_, log_, full_name(key));
+  const SettingsNode& value = *inner.require("value", "an array of 3 numbers").node;
+  const SettingsNode& sigma = *inner.require("sigma", "an array of 3 numbers >= 0").node;
   UncertainVec3 both{inner.to_vector3(value, "value", factor),
                      inner.to_vector3(sigma, "sigma", factor)};
   if ((both.sigma.array() < 0.0).any()) {
@@ -131,10 +125,9 @@ UncertainVec3 Settings::uncertain_vector(std::string_view key) const {
 }
 
 int64_t Settings::integer(std::string_view key, int64_t low, int64_t high) const {
-  double factor = 1.0;
   const std::string expected =
       "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
-  const SettingsNode& node = require(key, &factor, expected);
+  const SettingsNode& node = *require(key, expected).node;
   std::optional<int64_t> whole;
   if (const auto* i = std::get_if<int64_t>(&node.value)) whole = *i;
   // 1e8 is a real number in TOML, and the natural way to write a count.
@@ -153,21 +146,13 @@ int64_t Settings::integer_or(std::string_view key, int64_t otherwise, int64_t lo
 }
 
 bool Settings::flag_or(std::string_view key, bool otherwise) const {
-  double factor = 1.0;
-  const SettingsNode* node = find(key, &factor);
-  if (node == nullptr) return otherwise;
-  const auto* b = std::get_if<bool>(&node->value);
-  if (b == nullptr) throw InputError(node->where, full_name(key), describe(*node), "true or false");
-  return *b;
+  const SettingsNode* node = find(key).node;
+  return node == nullptr ? otherwise : as<bool>(*node, key, "true or false");
 }
 
 std::string Settings::text(std::string_view key) const {
-  double factor = 1.0;
-  const SettingsNode& node = require(key, &factor, "a text in quotes");
-  const auto* s = std::get_if<std::string>(&node.value);
-  if (s == nullptr)
-    throw InputError(node.where, full_name(key), describe(node), "a text in quotes");
-  return *s;
+  constexpr const char* expected = "a text in quotes";
+  return as<std::string>(*require(key, expected).node, key, expected);
 }
 
 std::string Settings::text_or(std::string_view key, std::string_view otherwise) const {
@@ -175,15 +160,11 @@ std::string Settings::text_or(std::string_view key, std::string_view otherwise) 
 }
 
 size_t Settings::choice(std::string_view key, const std::vector<std::string>& choices) const {
-  double factor = 1.0;
-  const SettingsNode& node = require(key, &factor, one_of(choices));
-  const auto* s = std::get_if<std::string>(&node.value);
-  if (s != nullptr) {
-    const auto it = std::find(choices.begin(), choices.end(), *s);
-    if (it != choices.end()) return static_cast<size_t>(it - choices.begin());
-  }
-  throw InputError(node.where, full_name(key), describe(node),
-                   s == nullptr ? one_of(choices) : one_of(choices, *s));
+  const SettingsNode& node = *require(key, one_of(choices)).node;
+  const auto& word = as<std::string>(node, key, one_of(choices));
+  const auto it = std::find(choices.begin(), choices.end(), word);
+  if (it != choices.end()) return static_cast<size_t>(it - choices.begin());
+  throw InputError(node.where, full_name(key), describe(node), one_of(choices, word));
 }
 
 size_t Settings::choice_or(std::string_view key, const std::vector<std::string>& choices,
@@ -192,72 +173,55 @@ size_t Settings::choice_or(std::string_view key, const std::vector<std::string>&
 }
 
 Vec3 Settings::vector3(std::string_view key) const {
-  double factor = 1.0;
-  const SettingsNode& node = require(key, &factor, "an array of 3 numbers");
-  return to_vector3(node, key, factor);
+  const auto [node, factor] = require(key, "an array of 3 numbers");
+  return to_vector3(*node, key, factor);
 }
 
 Vec3 Settings::vector3_or(std::string_view key, const Vec3& otherwise_SI) const {
-  double factor = 1.0;
-  const SettingsNode* node = find(key, &factor);
+  const auto [node, factor] = find(key);
   return node == nullptr ? otherwise_SI : to_vector3(*node, key, factor);
 }
 
 Mat3 Settings::matrix3(std::string_view key) const {
-  double factor = 1.0;
-  const SettingsNode& node = require(key, &factor, "an array of 3 rows of 3 numbers");
-  const auto* rows = std::get_if<SettingsNode::Array>(&node.value);
-  const auto is_row = [](const SettingsNode& row) {
-    return std::holds_alternative<SettingsNode::Array>(row.value);
-  };
-  if (rows == nullptr || rows->size() != 3 || !std::ranges::all_of(*rows, is_row)) {
-    throw InputError(node.where, full_name(key), describe(node), "an array of 3 rows of 3 numbers");
+  constexpr const char* expected = "an array of 3 rows of 3 numbers";
+  const auto [node, factor] = require(key, expected);
+  const auto& rows = as<SettingsNode::Array>(*node, key, expected);
+  if (rows.size() != 3 || !std::ranges::all_of(rows, &SettingsNode::is_array)) {
+    throw InputError(node->where, full_name(key), describe(*node), expected);
   }
   Mat3 m;
   for (int i = 0; i < 3; ++i) {
-    m.row(i) = to_vector3((*rows)[static_cast<size_t>(i)], key, factor).transpose();
+    m.row(i) = to_vector3(rows[static_cast<size_t>(i)], key, factor).transpose();
   }
   return m;
 }
 
 std::vector<Vec3> Settings::vectors3(std::string_view key) const {
-  double factor = 1.0;
-  const std::string expected = "an array of arrays of 3 numbers";
-  const SettingsNode& node = require(key, &factor, expected);
-  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
-  if (array == nullptr || array->empty()) {
-    throw InputError(node.where, full_name(key), describe(node), expected);
-  }
+  constexpr const char* expected = "an array of arrays of 3 numbers";
+  const auto [node, factor] = require(key, expected);
+  const auto& array = as<SettingsNode::Array>(*node, key, expected);
+  if (array.empty()) throw InputError(node->where, full_name(key), describe(*node), expected);
   std::vector<Vec3> all;
-  for (const auto& item : *array) all.push_back(to_vector3(item, key, factor));
+  for (const auto& item : array) all.push_back(to_vector3(item, key, factor));
   return all;
 }
 
 std::vector<double> Settings::numbers(std::string_view key, Range range) const {
-  double factor = 1.0;
-  const SettingsNode& node = require(key, &factor, "an array of numbers");
-  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
-  if (array == nullptr) {
-    throw InputError(node.where, full_name(key), describe(node), "an array of numbers");
-  }
+  constexpr const char* expected = "an array of numbers";
+  const auto [node, factor] = require(key, expected);
   std::vector<double> all;
-  for (const auto& item : *array) all.push_back(to_number(item, key, factor, range));
+  for (const auto& item : as<SettingsNode::Array>(*node, key, expected)) {
+    all.push_back(to_number(item, key, factor, range));
+  }
   return all;
 }
 
 std::vector<std::string> Settings::texts(std::string_view key) const {
-  double factor = 1.0;
-  const SettingsNode& node = require(key, &factor, "an array of texts");
-  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
-  if (array == nullptr) {
-    throw InputError(node.where, full_name(key), describe(node), "an array of texts");
-  }
+  constexpr const char* expected = "an array of texts";
   std::vector<std::string> all;
-  for (const auto& item : *array) {
-    const auto* s = std::get_if<std::string>(&item.value);
-    if (s == nullptr) throw InputError(item.where, full_name(key), describe(item), "a text");
+  for (const auto& item : as<SettingsNode::Array>(*require(key, expected).node, key, expected)) {
+    all.push_back(as<std::string>(item, key, "a text"));
     log_->read.insert(&item);
-    all.push_back(*s);
   }
   return all;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/constants.h"
+#include "core/numerics/interpolation.h"
 #include "raytrace/emitter.h"
 
 namespace photorque {
@@ -70,12 +72,11 @@ class AngularTable {
       const double* v = value.data() + first;
       const double* f = within.data() + first;
       const double slope = flux_per_intensity / per_step;
-      const double all = f[1] - f[0], low_slope = slope * v[0], high_slope = slope * v[1];
-      return f[0] + t * (low_slope + t * (3.0 * all - 2.0 * low_slope - high_slope +
-                                          t * (low_slope + high_slope - 2.0 * all)));
+      const auto c = hermite_coefficients(f[0], f[1] - f[0], slope * v[0], slope * v[1]);
+      return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
     }
   };
-  static constexpr double flux_per_intensity = 6.28318530717958647693;  // 2π, per rise
+  static constexpr double flux_per_intensity = 2.0 * pi;  // per rise
 
   const Segment* segment_at(double rise) const {
     for (const Segment& segment : segments_) {

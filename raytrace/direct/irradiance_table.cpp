@@ -40,15 +40,15 @@ class FactorTable<Count>::Series {
  public:
   // Doubles the number of Chebyshev points in the root until the series converges; empty if it
   // needs more than 96 points.
-  static std::optional<Series> of(const FactorTable& table, const Function& factors, int threads) {
+  static std::optional<Series> of(const FactorTable& table, const DiscLight& light, int threads) {
     constexpr size_t fewest = 24, most = 96;
     const size_t degrees =
         degrees_for((table.high_m_ - table.low_m_) / (table.high_m_ + table.low_m_));
     for (size_t points = fewest; points <= most; points *= 2) {
-      const Series one(table, factors, points, 1, threads);
+      const Series one(table, light, points, 1, threads);
       if (!one.converged()) continue;
       if (degrees == 1) return one;
-      return Series(table, factors, points, degrees, threads);
+      return Series(table, light, points, degrees, threads);
     }
     return std::nullopt;
   }
@@ -62,7 +62,7 @@ class FactorTable<Count>::Series {
   size_t degrees() const { return degrees_; }
 
  private:
-  Series(const FactorTable& table, const Function& factors, size_t points, size_t degrees,
+  Series(const FactorTable& table, const DiscLight& light, size_t points, size_t degrees,
          int threads)
       : points_(points),
         degrees_(degrees),
@@ -72,7 +72,8 @@ class FactorTable<Count>::Series {
       const size_t half = n / (points * degrees), i = n / degrees % points, j = n % degrees;
       const double h =
           table.low_m_ + chebyshev_fraction(degrees, j) * (table.high_m_ - table.low_m_);
-      const Factors here = factors(table.distance_m(half, chebyshev_fraction(points, i), h), h);
+      const Factors here =
+          factors_of(light, table.distance_m(half, chebyshev_fraction(points, i), h), h);
       for (size_t f = 0; f < Count; ++f) {
         value_[half * Count + f](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
             here[static_cast<Eigen::Index>(f)];
@@ -125,19 +126,18 @@ std::optional<std::vector<typename FactorTable<Count>::Kink>> FactorTable<Count>
 }
 
 template <int Count>
-std::optional<FactorTable<Count>> FactorTable<Count>::make(const DiscLight& light,
-                                                           const Function& factors, double low_m,
+std::optional<FactorTable<Count>> FactorTable<Count>::make(const DiscLight& light, double low_m,
                                                            double high_m, int threads) {
   constexpr size_t fewest_steps = 256, most_steps = 512, fewest_rows = 24;
   auto kinks = kinks_of(light, low_m, high_m);
   if (!kinks) return std::nullopt;
   FactorTable table(low_m, high_m, *std::move(kinks));
-  const auto series = Series::of(table, factors, threads);
+  const auto series = Series::of(table, light, threads);
   if (!series) return std::nullopt;
   size_t rows = fewest_rows;
   for (size_t steps = fewest_steps; steps <= most_steps; steps *= 2, rows *= 2) {
     table.fill(*series, steps, series->degrees() == 1 ? 1 : rows + 1);
-    if (table.agrees_with(factors)) return table;
+    if (table.agrees_with(light)) return table;
   }
   return std::nullopt;
 }
@@ -169,7 +169,7 @@ void FactorTable<Count>::fill(const Series& series, size_t steps, size_t rows) {
 }
 
 template <int Count>
-bool FactorTable<Count>::agrees_with(const Function& factors) {
+bool FactorTable<Count>::agrees_with(const DiscLight& light) {
   constexpr size_t tests = 19;  // per half
   double largest = 0.0, worst = 0.0;
   // Tests the middle of the first interval of heights, where the cubic is least accurate, and the
@@ -182,7 +182,7 @@ bool FactorTable<Count>::agrees_with(const Function& factors) {
       for (size_t test = 0; test < tests; ++test) {
         const double step = static_cast<double>(test * steps_ / tests) + 0.5;
         const double d = distance_m(half, step / static_cast<double>(steps_), h);
-        const Factors truth = factors(d, h);
+        const Factors truth = factors_of(light, d, h);
         largest = std::max(largest, truth[0]);
         worst = std::max(worst, (at(d, h) - truth).abs().maxCoeff());
       }

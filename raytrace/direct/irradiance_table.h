@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -20,23 +19,48 @@
 
 namespace photorque {
 
-// Table of `Count` factors (2 or 6).
+// Table of the two factors of the irradiance, or of the six of irradiance and momentum together. On
+// a surface of normal n at height h above the aperture and distance d from its axis, the irradiance
+// is
+//   E = −n_z A(h, d) − n·p̂ B(h, d),
+// with p̂ pointing away from the axis.
 template <int Count>
 class FactorTable {
  public:
   using Factors = Eigen::Array<double, Count, 1>;
-  // Arguments: distance from the axis and height [m].
-  using Function = std::function<Factors(double, double)>;
 
-  // Table of the `factors` of `light` for heights in [low_m, high_m], low_m > 0. Empty if no table
-  // agrees with them to `tolerance` of the largest value at all test points: kinks cross within
-  // these heights, or light reaches the side. The result has the same bits for any `threads`.
-  static std::optional<FactorTable> make(const DiscLight& light, const Function& factors,
-                                         double low_m, double high_m, int threads);
+  // Table for heights in [low_m, high_m], low_m > 0. Empty if no table agrees with the light to
+  // `tolerance` of the largest value at all test points: kinks cross within these heights, or light
+  // reaches the side. The result has the same bits for any `threads`.
+  static std::optional<FactorTable> make(const DiscLight& light, double low_m, double high_m,
+                                         int threads);
   static constexpr double tolerance = Count == 2 ? 3e-8 : 1e-6;
 
   // Largest error found at the test points half-way between steps.
-  double error() const { return error_; }
+  double error_W_m2() const { return error_; }
+
+  // See DiscLight::irradiance_W_m2(); heights within the table's range.
+  double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const requires(Count == 2) {
+    const double d = std::sqrt(point_m.x() * point_m.x() + point_m.y() * point_m.y());
+    const double away = d > 0.0 ? (normal.x() * point_m.x() + normal.y() * point_m.y()) / d : 0.0;
+    const Factors factor = at(d, point_m.z());
+    return -normal.z() * factor[0] - away * factor[1];
+  }
+  // See DiscLight::arriving(); heights within the table's range.
+  ArrivingLight arriving(const Vec3& point_m, const Vec3& normal) const requires(Count == 6) {
+    const double d = std::sqrt(point_m.x() * point_m.x() + point_m.y() * point_m.y());
+    return DiscLight::arriving_of(at(d, point_m.z()), point_m, normal);
+  }
+
+ private:
+  // The factors that are tabulated, by distance from the axis and height [m].
+  static Factors factors_of(const DiscLight& light, double distance_m, double height_m) {
+    if constexpr (Count == 2) {
+      return light.factors_W_m2(distance_m, height_m);
+    } else {
+      return light.flow_W_m2(distance_m, height_m);
+    }
+  }
   // Factors at a height within the table's range; zero outside the beam.
   Factors at(double distance_m, double height_m) const {
     const double h = height_m, d = distance_m;
@@ -69,7 +93,6 @@ class FactorTable {
            across.weight[3] * four.template segment<Count>(3 * Count);
   }
 
- private:
   using Four = Eigen::Array<double, 4 * Count, 1>;  // factors at four neighbours
 
   // Weights of four neighbouring values, at the places 0 … `last` (≥ 3), of the cubic through them.
@@ -100,7 +123,7 @@ class FactorTable {
                                                    double high_m);
   size_t halves() const { return 2 * (kinks_.size() - 1); }
   void fill(const Series& series, size_t steps, size_t rows);
-  bool agrees_with(const Function& factors);
+  bool agrees_with(const DiscLight& light);
   // Distance from the axis of a place in the table: a fraction of half 2 · piece or 2 · piece + 1.
   double distance_m(size_t half, double fraction, double height_m) const;
 
@@ -116,64 +139,7 @@ class FactorTable {
 extern template class FactorTable<2>;
 extern template class FactorTable<6>;
 
-// Irradiance at many points. On a surface of normal n at height h above the aperture and distance d
-// from its axis,
-//   E = −n_z A(h, d) − n·p̂ B(h, d),
-// with p̂ pointing away from the axis.
-class IrradianceTable {
- public:
-  // See FactorTable::make().
-  static std::optional<IrradianceTable> make(const DiscLight& light, double low_m, double high_m,
-                                             int threads) {
-    auto factors = FactorTable<2>::make(
-        light, [&](double d, double h) { return light.factors_W_m2(d, h); }, low_m, high_m,
-        threads);
-    if (!factors) return std::nullopt;
-    return IrradianceTable(*std::move(factors));
-  }
-  static constexpr double tolerance = FactorTable<2>::tolerance;
-
-  // Largest error found half-way between steps [W/m²].
-  double error_W_m2() const { return factors_.error(); }
-
-  // See DiscLight::irradiance_W_m2(); heights within the table's range.
-  double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const {
-    const double d = std::sqrt(point_m.x() * point_m.x() + point_m.y() * point_m.y());
-    const double away = d > 0.0 ? (normal.x() * point_m.x() + normal.y() * point_m.y()) / d : 0.0;
-    const Eigen::Array2d factor = factors_.at(d, point_m.z());
-    return -normal.z() * factor[0] - away * factor[1];
-  }
-
- private:
-  explicit IrradianceTable(FactorTable<2> factors) : factors_(std::move(factors)) {}
-
-  FactorTable<2> factors_;
-};
-
-// Table of irradiance and momentum together.
-class MomentumTable {
- public:
-  // See FactorTable::make().
-  static std::optional<MomentumTable> make(const DiscLight& light, double low_m, double high_m,
-                                           int threads) {
-    auto factors = FactorTable<6>::make(
-        light, [&](double d, double h) { return light.flow_W_m2(d, h); }, low_m, high_m, threads);
-    if (!factors) return std::nullopt;
-    return MomentumTable(*std::move(factors));
-  }
-
-  double error_W_m2() const { return factors_.error(); }
-
-  // See DiscLight::arriving(); heights within the table's range.
-  ArrivingLight arriving(const Vec3& point_m, const Vec3& normal) const {
-    const double d = std::sqrt(point_m.x() * point_m.x() + point_m.y() * point_m.y());
-    return DiscLight::arriving_of(factors_.at(d, point_m.z()), point_m, normal);
-  }
-
- private:
-  explicit MomentumTable(FactorTable<6> factors) : factors_(std::move(factors)) {}
-
-  FactorTable<6> factors_;
-};
+using IrradianceTable = FactorTable<2>;
+using MomentumTable = FactorTable<6>;
 
 }  // namespace photorque

@@ -94,6 +94,13 @@ PowerFractions fractions_of(const OpticalSurface& surface, double cosine, size_t
           surface.transmitted[band], bsdf == nullptr ? 0.0 : bsdf->retroreflected[band]};
 }
 
+void set_fractions(OpticalSurface& surface, size_t band, const PowerFractions& fractions) {
+  surface.absorbed[band] = fractions.absorbed;
+  surface.specular[band] = fractions.specular;
+  surface.diffuse[band] = fractions.diffuse;
+  surface.transmitted[band] = fractions.transmitted;
+}
+
 Vec3 scattered_direction(const OpticalSurface& surface, Component component,
                          const Incidence& incidence, const Draw& draw) {
   if (const Lobe* lobe = lobe_of(surface, component)) {

@@ -136,6 +136,9 @@ struct Incidence {
 // The fractions of one band at `cosine` ∈ (0, 1] of the angle of incidence.
 PowerFractions fractions_of(const OpticalSurface& surface, double cosine, size_t band);
 
+// Sets the fractions of one band.
+void set_fractions(OpticalSurface& surface, size_t band, const PowerFractions& fractions);
+
 // Draws the direction of light of one component: a unit vector in the frame of `incidence`.
 Vec3 scattered_direction(const OpticalSurface& surface, Component component,
                          const Incidence& incidence, const Draw& draw);

@@ -1,9 +1,9 @@
 #include "raytrace/surfaces/glass.h"
 
 #include <cmath>
-#include <sstream>
 
 #include "core/constants.h"
+#include "core/text/format.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/cosine_table.h"
 #include "raytrace/surfaces/ggx.h"
@@ -31,14 +31,46 @@ namespace {
 class RoughGlass final : public Lobe {
  public:
   // `alpha` ∈ [0.001, 1], `index` ∈ (1, 10].
-  RoughGlass(double alpha, double index);
+  RoughGlass(double alpha, double index)
+      : facets_{alpha}, index_(index), once_([this](double cosine) {
+          return facets_.moments(
+              cosine, [this](double facing) { return fresnel_reflectance(facing, index_); });
+        }) {}
 
   // E at `cosine`, from a table with an error of 1e-4.
   double reflectance(double cosine) const { return once_(cosine)[0]; }
 
-  Vec3 direction(const Arrival& light, const Draw& draw) const override;
-  Vec3 mean_direction(const Arrival& light) const override;
-  double density(const Arrival& light, const Vec3& out) const override;
+  Vec3 direction(const Arrival& light, const Draw& draw) const override {
+    const Vec3 in = direction_at(light.cosine);
+    Vec3 out = Vec3::UnitZ();
+    // At a steep angle glass reflects about one ray in 25, so about 25 attempts are typical. The
+    // limit is never reached in practice.
+    constexpr uint64_t most = 4096;
+    for (uint64_t attempt = 0; attempt < most; ++attempt) {
+      const Draw now = draw.attempt(attempt);
+      const Vec3 normal = facets_.visible_normal(in, now.u, now.v);
+      const double facing = in.dot(normal);
+      out = 2.0 * facing * normal - in;
+      const double kept = facets_.leaves(light.cosine, out.z());
+      if (kept > 0.0 && draw.extra(3 * attempt + 2) < kept * fresnel_reflectance(facing, index_)) {
+        return out;
+      }
+    }
+    out.z() = std::max(1e-6, std::abs(out.z()));
+    return out.normalized();
+  }
+
+  Vec3 mean_direction(const Arrival& light) const override {
+    const auto [power, x_by_sine, z] = once_(light.cosine);
+    return {direction_at(light.cosine).x() * x_by_sine / power, 0.0, z / power};
+  }
+
+  double density(const Arrival& light, const Vec3& out) const override {
+    const Vec3 in = direction_at(light.cosine);
+    const double facing = in.dot((in + out).normalized());
+    return facets_.once_reflected_1_sr(in, out) * fresnel_reflectance(facing, index_) /
+           reflectance(light.cosine);
+  }
 
  private:
   Ggx facets_;
@@ -46,100 +78,47 @@ class RoughGlass final : public Lobe {
   CosineTable<3> once_;  // power, sums of o_x over sin θ and of o_z
 };
 
-RoughGlass::RoughGlass(double alpha, double index)
-    : facets_{alpha}, index_(index), once_([this](double cosine) {
-        return facets_.moments(
-            cosine, [this](double facing) { return fresnel_reflectance(facing, index_); });
-      }) {}
-
-Vec3 RoughGlass::direction(const Arrival& light, const Draw& draw) const {
-  const double cosine = light.cosine;
-  const Vec3 in = direction_at(cosine);
-  Vec3 out = Vec3::UnitZ();
-  // At a steep angle glass reflects about one ray in 25, so about 25 attempts are typical. The
-  // limit is never reached in practice.
-  constexpr uint64_t most = 4096;
-  for (uint64_t attempt = 0; attempt < most; ++attempt) {
-    const Draw now = draw.attempt(attempt);
-    const Vec3 normal = facets_.visible_normal(in, now.u, now.v);
-    const double facing = in.dot(normal);
-    out = 2.0 * facing * normal - in;
-    const double kept = facets_.leaves(cosine, out.z());
-    if (kept > 0.0 && draw.extra(3 * attempt + 2) < kept * fresnel_reflectance(facing, index_)) {
-      return out;
-    }
-  }
-  out.z() = std::max(1e-6, std::abs(out.z()));
-  return out.normalized();
-}
-
-Vec3 RoughGlass::mean_direction(const Arrival& light) const {
-  const double cosine = light.cosine;
-  const auto [power, x_by_sine, z] = once_(cosine);
-  return {direction_at(cosine).x() * x_by_sine / power, 0.0, z / power};
-}
-
-double RoughGlass::density(const Arrival& light, const Vec3& out) const {
-  const double cosine = light.cosine;
-  const Vec3 in = direction_at(cosine);
-  const double facing = in.dot((in + out).normalized());
-  return facets_.once_reflected_1_sr(in, out) * fresnel_reflectance(facing, index_) /
-         reflectance(cosine);
-}
-
 using Reflectance = std::function<double(double cosine)>;
 
-class OverMatt final : public AlbedoLaw {
+// The fractions behind a front that reflects the fraction `reflected`, for a matt base that
+// scatters `diffuse` and for a cell that reflects `specular`.
+PowerFractions over_matt(double reflected, double diffuse) {
+  const double enters = 1.0 - reflected;
+  return {.absorbed = enters * (1.0 - diffuse), .specular = reflected, .diffuse = enters * diffuse};
+}
+
+PowerFractions over_cell(double reflected, double specular) {
+  const double enters = 1.0 - reflected;
+  // Light that meets the base, including inner reflections, as a fraction of the incident light.
+  // None enters at grazing incidence.
+  const double meets = enters > 0.0 ? enters / (1.0 - reflected * specular) : 0.0;
+  return {.absorbed = meets * (1.0 - specular), .specular = 1.0 - meets * (1.0 - specular)};
+}
+
+PowerFractions of_pane(double cosine, double index, double transmitted) {
+  const double face = fresnel_reflectance(cosine, index), enters = 1.0 - face;
+  const double once = std::pow(transmitted, 1.0 / refracted_cosine(cosine, index));
+  const double there_and_back = face * once;
+  const double leaves =
+      enters > 0.0 ? enters * enters * once / (1.0 - there_and_back * there_and_back) : 0.0;
+  PowerFractions fractions{.specular = face + there_and_back * leaves, .transmitted = leaves};
+  fractions.absorbed = std::max(0.0, 1.0 - fractions.specular - fractions.transmitted);
+  return fractions;
+}
+
+// The fractions of a base with one property per band, behind glass.
+class GlassLaw final : public AlbedoLaw {
  public:
-  OverMatt(const BandValues& diffuse, Reflectance front)
-      : diffuse_(diffuse), front_(std::move(front)) {}
+  using Fractions = std::function<PowerFractions(double cosine, double base)>;
+  GlassLaw(const BandValues& base, Fractions fractions)
+      : base_(base), fractions_(std::move(fractions)) {}
   PowerFractions fractions(double cosine, size_t band) const override {
-    const double reflected = front_(cosine), enters = 1.0 - reflected;
-    return {.absorbed = enters * (1.0 - diffuse_[band]),
-            .specular = reflected,
-            .diffuse = enters * diffuse_[band]};
+    return fractions_(cosine, base_[band]);
   }
 
  private:
-  BandValues diffuse_;
-  Reflectance front_;
-};
-
-class OverCell final : public AlbedoLaw {
- public:
-  OverCell(const BandValues& specular, Reflectance front)
-      : specular_(specular), front_(std::move(front)) {}
-  PowerFractions fractions(double cosine, size_t band) const override {
-    const double reflected = front_(cosine), enters = 1.0 - reflected;
-    const double base = specular_[band];
-    // Light that meets the base, including inner reflections, as a fraction of the incident light.
-    // None enters at grazing incidence.
-    const double meets = enters > 0.0 ? enters / (1.0 - reflected * base) : 0.0;
-    return {.absorbed = meets * (1.0 - base), .specular = 1.0 - meets * (1.0 - base)};
-  }
-
- private:
-  BandValues specular_;
-  Reflectance front_;
-};
-
-class Pane final : public AlbedoLaw {
- public:
-  Pane(const BandValues& transmitted, double index) : transmitted_(transmitted), index_(index) {}
-  PowerFractions fractions(double cosine, size_t band) const override {
-    const double face = fresnel_reflectance(cosine, index_), enters = 1.0 - face;
-    const double once = std::pow(transmitted_[band], 1.0 / refracted_cosine(cosine, index_));
-    const double there_and_back = face * once;
-    const double leaves =
-        enters > 0.0 ? enters * enters * once / (1.0 - there_and_back * there_and_back) : 0.0;
-    PowerFractions fractions{.specular = face + there_and_back * leaves, .transmitted = leaves};
-    fractions.absorbed = std::max(0.0, 1.0 - fractions.specular - fractions.transmitted);
-    return fractions;
-  }
-
- private:
-  BandValues transmitted_;
-  double index_;
+  BandValues base_;
+  Fractions fractions_;
 };
 
 // Light of a Lambertian base after its passage through the glass.
@@ -175,11 +154,8 @@ class ThroughFront final : public Lobe {
 };
 
 std::string describe(double index, double alpha) {
-  std::ostringstream text;
-  text.precision(3);
-  text << (alpha > 0.0 ? "rough " : "") << "glass of index " << index << " in front";
-  if (alpha > 0.0) text << ", roughness " << std::sqrt(alpha);
-  return text.str();
+  if (!(alpha > 0.0)) return printed("glass of index %.3g in front", index);
+  return printed("rough glass of index %.3g in front, roughness %.3g", index, std::sqrt(alpha));
 }
 
 }  // namespace
@@ -202,14 +178,21 @@ OpticalSurface behind_glass(const OpticalSurface& base, double index, double alp
   }
   switch (glass_base(base)) {
     case GlassBase::matt:
-      bsdf.law = std::make_shared<OverMatt>(base.diffuse, front);
+      bsdf.law = std::make_shared<GlassLaw>(base.diffuse, [front](double cosine, double diffuse) {
+        return over_matt(front(cosine), diffuse);
+      });
       bsdf.diffuse = std::make_shared<ThroughFront>(front);
       break;
     case GlassBase::cell:
-      bsdf.law = std::make_shared<OverCell>(base.specular, front);
+      bsdf.law = std::make_shared<GlassLaw>(base.specular, [front](double cosine, double specular) {
+        return over_cell(front(cosine), specular);
+      });
       break;
     case GlassBase::pane:
-      bsdf.law = std::make_shared<Pane>(base.transmitted, index);
+      bsdf.law =
+          std::make_shared<GlassLaw>(base.transmitted, [index](double cosine, double transmitted) {
+            return of_pane(cosine, index, transmitted);
+          });
       break;
   }
   bsdf.description = describe(index, alpha);
@@ -218,11 +201,7 @@ OpticalSurface behind_glass(const OpticalSurface& base, double index, double alp
     const double sum =
         base.absorbed[band] + base.specular[band] + base.diffuse[band] + base.transmitted[band];
     if (sum == 0.0) continue;  // band not in use
-    const PowerFractions fractions = bsdf.law->fractions(1.0, band);
-    surface.absorbed[band] = fractions.absorbed;
-    surface.specular[band] = fractions.specular;
-    surface.diffuse[band] = fractions.diffuse;
-    surface.transmitted[band] = fractions.transmitted;
+    set_fractions(surface, band, bsdf.law->fractions(1.0, band));
   }
   surface.bsdf = std::make_shared<const Bsdf>(std::move(bsdf));
   return surface;

@@ -37,8 +37,7 @@ double interpolated(const BrdfTable& table, double incidence, double scatter, do
     const double weight =
         (di ? i.part : 1.0 - i.part) * (dk ? o.part : 1.0 - o.part) * (da ? a.part : 1.0 - a.part);
     if (weight == 0.0) continue;
-    const size_t row = (i.below + di) * table.scatter_rad.size() + o.below + dk;
-    sum += weight * table.brdf_1_sr[row * table.azimuth_rad.size() + a.below + da];
+    sum += weight * table.brdf_1_sr[table.index(i.below + di, o.below + dk, a.below + da)];
   }
   return sum;
 }
@@ -131,7 +130,7 @@ class BrdfLobe final : public Lobe {
   explicit BrdfLobe(const BrdfTable& table) : brdf_(reciprocal_brdf(table)) { integrate(); }
 
   double reflectance(double cosine) const {
-    const auto [i, part] = place_among(polar(), std::acos(std::min(cosine, 1.0)));
+    const auto [i, part] = place_of(cosine);
     return (1.0 - part) * reflectance_[i] + part * reflectance_[i + 1];
   }
   double asymmetry() const { return brdf_.asymmetry; }
@@ -144,8 +143,7 @@ class BrdfLobe final : public Lobe {
   double node_reflectance(size_t i) const { return reflectance_[i]; }
 
   Vec3 direction(const Arrival& light, const Draw& draw) const override {
-    const double cosine = light.cosine;
-    const auto [i, part] = place_among(polar(), std::acos(std::min(cosine, 1.0)));
+    const auto [i, part] = place_of(light.cosine);
     const double high = part * reflectance_[i + 1], low = (1.0 - part) * reflectance_[i];
     const size_t node = draw.extra(1) * (low + high) < high ? i + 1 : i;
     const Cell cell = choose_cell(node, draw.u);
@@ -164,17 +162,15 @@ class BrdfLobe final : public Lobe {
   }
 
   Vec3 mean_direction(const Arrival& light) const override {
-    const double cosine = light.cosine;
-    const auto [i, part] = place_among(polar(), std::acos(std::min(cosine, 1.0)));
+    const auto [i, part] = place_of(light.cosine);
     const double whole = (1.0 - part) * reflectance_[i] + part * reflectance_[i + 1];
     if (!(whole > 0.0)) return Vec3::Zero();
     return ((1.0 - part) * momentum_[i] + part * momentum_[i + 1]) / whole;
   }
 
   double density(const Arrival& light, const Vec3& out) const override {
-    const double cosine = light.cosine;
-    const auto [i, i_part] = place_among(polar(), std::acos(std::min(cosine, 1.0)));
-    const auto [o, o_part] = place_among(polar(), std::acos(std::clamp(out.z(), 0.0, 1.0)));
+    const auto [i, i_part] = place_of(light.cosine);
+    const auto [o, o_part] = place_of(std::max(out.z(), 0.0));
     const auto [a, a_part] = place_among(azimuth(), std::atan2(std::abs(out.y()), -out.x()));
     const auto along_azimuth = [&, a = a, a_part = a_part](size_t in, size_t to) {
       return (1.0 - a_part) * brdf_.at(in, to, a) + a_part * brdf_.at(in, to, a + 1);
@@ -183,13 +179,17 @@ class BrdfLobe final : public Lobe {
       return (1.0 - o_part) * along_azimuth(in, o) + o_part * along_azimuth(in, o + 1);
     };
     const double f = (1.0 - i_part) * along_both(i) + i_part * along_both(i + 1);
-    const double whole = reflectance(cosine);
+    const double whole = reflectance(light.cosine);
     return whole > 0.0 ? f * out.z() / whole : 0.0;
   }
 
  private:
   const std::vector<double>& polar() const { return brdf_.polar_rad; }
   const std::vector<double>& azimuth() const { return brdf_.azimuth_rad; }
+  // Place of a cosine among the polar angles.
+  NodePlace place_of(double cosine) const {
+    return place_among(polar(), std::acos(std::min(cosine, 1.0)));
+  }
 
   void integrate() {
     const auto power = hat_weights(polar(), [](double t) { return std::sin(t) * std::cos(t); });
@@ -302,9 +302,7 @@ MeasuredSurface measured_surface(std::string name, const BrdfTable& table,
   measured.surface.name = std::move(name);
   for (size_t band = 0; band < max_bands; ++band) {
     if (!(scale[band] > 0.0)) continue;  // band not in use
-    const PowerFractions fractions = bsdf.law->fractions(1.0, band);
-    measured.surface.absorbed[band] = fractions.absorbed;
-    measured.surface.diffuse[band] = fractions.diffuse;
+    set_fractions(measured.surface, band, bsdf.law->fractions(1.0, band));
   }
   measured.surface.bsdf = std::make_shared<const Bsdf>(std::move(bsdf));
   const size_t brightest = lobe->brightest_node();

@@ -23,8 +23,11 @@ struct BrdfTable {
   std::vector<double> azimuth_rad;
   std::vector<double> brdf_1_sr;  // ≥ 0; [incidence][scatter][azimuth], the last fastest
 
+  size_t index(size_t incidence, size_t scatter, size_t azimuth) const {
+    return (incidence * scatter_rad.size() + scatter) * azimuth_rad.size() + azimuth;
+  }
   double& at(size_t incidence, size_t scatter, size_t azimuth) {
-    return brdf_1_sr[(incidence * scatter_rad.size() + scatter) * azimuth_rad.size() + azimuth];
+    return brdf_1_sr[index(incidence, scatter, azimuth)];
   }
 };
 

@@ -21,29 +21,26 @@ class RoughMirror final : public Lobe {
   }
 
   Vec3 direction(const Arrival& light, const Draw& draw) const override {
-    const double cosine = light.cosine;
-    if (draw.extra(0) >= once_(cosine)[0]) return rest_direction(draw);
-    const Vec3 in = direction_at(cosine);
+    if (draw.extra(0) >= once_(light.cosine)[0]) return rest_direction(draw);
+    const Vec3 in = direction_at(light.cosine);
     constexpr uint64_t most = 256;  // the acceptance is at least 1/3
     for (uint64_t attempt = 0; attempt < most; ++attempt) {
       const Draw now = draw.attempt(attempt);
       const Vec3 normal = facets_.visible_normal(in, now.u, now.v);
       const Vec3 out = 2.0 * in.dot(normal) * normal - in;
-      if (now.extra(3 * attempt + 2) < facets_.leaves(cosine, out.z())) return out;
+      if (now.extra(3 * attempt + 2) < facets_.leaves(light.cosine, out.z())) return out;
     }
     return rest_direction(draw);
   }
 
   Vec3 mean_direction(const Arrival& light) const override {
-    const double cosine = light.cosine;
-    const auto [power, x_by_sine, z] = once_(cosine);
-    return {direction_at(cosine).x() * x_by_sine, 0.0, z + (1.0 - power) * rest_z_};
+    const auto [power, x_by_sine, z] = once_(light.cosine);
+    return {direction_at(light.cosine).x() * x_by_sine, 0.0, z + (1.0 - power) * rest_z_};
   }
 
   double density(const Arrival& light, const Vec3& out) const override {
-    const double cosine = light.cosine;
-    const double rest = (1.0 - once_(cosine)[0]) * (1.0 - once_(out.z())[0]);
-    return facets_.once_reflected_1_sr(direction_at(cosine), out) +
+    const double rest = (1.0 - once_(light.cosine)[0]) * (1.0 - once_(out.z())[0]);
+    return facets_.once_reflected_1_sr(direction_at(light.cosine), out) +
            (rest_ > 0.0 ? rest * out.z() / (pi * rest_) : 0.0);
   }
 

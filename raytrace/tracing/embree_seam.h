@@ -8,6 +8,8 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <algorithm>
+
 namespace photorque {
 
 // Similarity of the rays of a packet. It affects only the speed.
@@ -87,6 +89,16 @@ struct PacketType<16> {
   using type = RTCRayHit16;
   using shadow = RTCRay16;
 };
+
+// Sets the members that are equal for all rays.
+template <int Width, class Packet>
+void initialise(Packet& packet) {
+  std::fill_n(packet.tnear, Width, 0.0f);
+  std::fill_n(packet.time, Width, 0.0f);
+  std::fill_n(packet.mask, Width, ~0u);
+  std::fill_n(packet.id, Width, 0u);
+  std::fill_n(packet.flags, Width, 0u);
+}
 
 }  // namespace embree_seam
 }  // namespace photorque

@@ -16,11 +16,7 @@ void intersect_packets(const TraceableScene::Data& scene, size_t rays, Coherence
   alignas(64) std::array<int, Width> valid;
   alignas(64) typename embree_seam::PacketType<Width>::type packet;
   valid.fill(-1);
-  std::fill_n(packet.ray.tnear, Width, 0.0f);
-  std::fill_n(packet.ray.time, Width, 0.0f);
-  std::fill_n(packet.ray.mask, Width, ~0u);
-  std::fill_n(packet.ray.id, Width, 0u);
-  std::fill_n(packet.ray.flags, Width, 0u);
+  embree_seam::initialise<Width>(packet.ray);
   std::fill_n(packet.hit.instID[0], Width, RTC_INVALID_GEOMETRY_ID);
   const std::array<float*, 6> rows = {packet.ray.org_x, packet.ray.org_y, packet.ray.org_z,
                                       packet.ray.dir_x, packet.ray.dir_y, packet.ray.dir_z};

@@ -90,21 +90,10 @@ Vec3 heat_momentum_N(const Bsdf& bsdf, bool front, const Vec3& lit_normal, doubl
          lit_normal;
 }
 
-Ray make_ray(const Vec3& origin_m, const Vec3& direction, uint32_t sample) {
-  Ray ray{};
-  for (int k = 0; k < 3; ++k) {
-    ray.origin_m[k] = static_cast<float>(origin_m[k]);
-    ray.direction[k] = static_cast<float>(direction[k]);
-  }
-  ray.sample = sample;
-  return ray;
-}
-
 // Direction and side of the light at hit i, in the body frame.
 Incidence incidence_at(const TraceableScene::Data& scene, const HitBuffer& buffer, int i) {
-  const TrianglePlane& plane = scene.plane(buffer.hits.instance[i], buffer.hits.triangle[i]);
-  const Vec3 outward(plane.normal[0], plane.normal[1], plane.normal[2]);
-  return {buffer.direction(i), buffer.hits.front[i] != 0 ? outward : Vec3(-outward)};
+  const Hits& hits = buffer.hits;
+  return {buffer.direction(i), scene.normal(hits.instance[i], hits.triangle[i], hits.front[i])};
 }
 
 // Processes hit i of the buffer, whose absorbed_W is known. Subtracts the leaving momentum,
@@ -117,7 +106,7 @@ void scatter(const InteractionContext& context, const SobolSequence& sequence, H
   const TraceableScene::Data& scene = *context.scene;
   const OpticalSurface& surface = scene.surface(hits.instance[i], hits.front[i]);
   const Incidence incidence = incidence_at(scene, buffer, i);
-  const Vec3 position(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
+  const Vec3 position = hits.position_at_m(static_cast<size_t>(i));
   const HitAlbedo albedo(surface, incidence.cosine, hits.bands);
   const ComponentPowers carried = carried_W(hits, i, albedo);
 

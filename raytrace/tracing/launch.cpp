@@ -85,15 +85,15 @@ struct LandingGrid {
   float x_low, y_low, x_scale, y_scale;
 
   // Derives the grid from some rays of the batch.
-  LandingGrid(const LaunchPlan& plan, uint32_t batch, const Landing& some)
+  LandingGrid(const LandingRange& range, uint32_t batch, const Landing& some)
       : bits(cell_bits(batch)) {
     const auto [x_least, x_most] = std::minmax_element(some.x.begin(), some.x.end());
     const auto [y_least, y_most] = std::minmax_element(some.y.begin(), some.y.end());
-    x_low = std::max(*x_least, plan.x_low);
-    y_low = std::max(*y_least, plan.y_low);
+    x_low = std::max(*x_least, range.x_low);
+    y_low = std::max(*y_least, range.y_low);
     const float side = static_cast<float>(1u << bits);
-    x_scale = side / std::max(std::min(*x_most, plan.x_high) - x_low, 1e-30f);
-    y_scale = side / std::max(std::min(*y_most, plan.y_high) - y_low, 1e-30f);
+    x_scale = side / std::max(std::min(*x_most, range.x_high) - x_low, 1e-30f);
+    y_scale = side / std::max(std::min(*y_most, range.y_high) - y_low, 1e-30f);
   }
 };
 
@@ -134,15 +134,10 @@ void counting_sort(uint32_t key_count, LaunchBuffer& buffer) {
   }
 }
 
-std::array<uint32_t*, sobol_dimensions> pointers(SampleBlock& samples) {
-  return {samples.bits[0].data(), samples.bits[1].data(), samples.bits[2].data(),
-          samples.bits[3].data()};
-}
-
 // Statistics of a sample of a beam's rays.
 struct BeamSample {
-  float x_low = std::numeric_limits<float>::max(), y_low = x_low;
-  float x_high = -x_low, y_high = -x_low;
+  static constexpr float most = std::numeric_limits<float>::max();
+  LandingRange range{most, -most, most, -most};
   std::array<uint32_t, 3> negative{};     // components of directions in the body frame
   double aperture2 = 0.0, spread2 = 0.0;  // Σ x² + y² of origins, and of directions
   static constexpr uint32_t rays = 4 * sobol_block;
@@ -165,13 +160,14 @@ BeamSample sample_beam(const Emitter& emitter, const std::optional<Targets>& tar
   Landing landing;
   RayColumns placed;
   for (uint32_t first = 0; first < BeamSample::rays; first += sobol_block) {
-    sobol_points({}, first, pointers(samples));
+    sobol_points({}, first, samples.columns());
     emit(emitter, targets, samples, rays);
     placement.place(rays, placed, landing);
     for (size_t i = 0; i < ray_block; ++i) {
       const float x = landing.x[i], y = landing.y[i];
-      sample.x_low = std::min(sample.x_low, x), sample.x_high = std::max(sample.x_high, x);
-      sample.y_low = std::min(sample.y_low, y), sample.y_high = std::max(sample.y_high, y);
+      LandingRange& range = sample.range;
+      range.x_low = std::min(range.x_low, x), range.x_high = std::max(range.x_high, x);
+      range.y_low = std::min(range.y_low, y), range.y_high = std::max(range.y_high, y);
       for (size_t k = 0; k < 2; ++k) {
         sample.aperture2 += rays.origin_m[k][i] * rays.origin_m[k][i];
         sample.spread2 += rays.direction[k][i] * rays.direction[k][i];
@@ -208,22 +204,14 @@ LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_e
   const BeamSample sample = sample_beam(emitter, targets, placement);
   const auto bits = shared_bits(std::max(log2_rays - log2_batch, 0), std::sqrt(sample.aperture2),
                                 std::sqrt(sample.spread2) * std::max(centre.z(), 0.0));
-  LaunchPlan plan{SobolCells(log2_rays, bits),
-                  placement,
-                  std::move(targets),
-                  sample.x_low,
-                  sample.x_high,
-                  sample.y_low,
-                  sample.y_high,
-                  {},
-                  1};
+  LaunchPlan plan{SobolCells(log2_rays, bits), placement, std::move(targets), sample.range};
   if (centre.z() > 0.0) {  // rays that miss the scene need no order
     const auto radius = static_cast<float>(scene.radius_m);
     const auto cx = static_cast<float>(centre.x()), cy = static_cast<float>(centre.y());
-    plan.x_low = std::max(plan.x_low, cx - radius),
-    plan.x_high = std::min(plan.x_high, cx + radius);
-    plan.y_low = std::max(plan.y_low, cy - radius),
-    plan.y_high = std::min(plan.y_high, cy + radius);
+    plan.range.x_low = std::max(plan.range.x_low, cx - radius);
+    plan.range.x_high = std::min(plan.range.x_high, cx + radius);
+    plan.range.y_low = std::max(plan.range.y_low, cy - radius);
+    plan.range.y_high = std::min(plan.range.y_high, cy + radius);
   }
   for (size_t k = 0; k < 3; ++k) {
     if (sample.negative[k] == 0 || sample.negative[k] == BeamSample::rays) continue;
@@ -247,10 +235,10 @@ void launch(const Emitter& emitter, const LaunchPlan& plan, const SobolStream& s
   placed[7].fill(0.0f);
   std::optional<LandingGrid> grid;
   for (uint32_t i = 0; i < count; i += ray_block) {
-    plan.cells.points(stream, cell, i, pointers(samples), index.data());
+    plan.cells.points(stream, cell, i, samples.columns(), index.data());
     emit(emitter, plan.targets, samples, rays);
     plan.placement.place(rays, placed, landing);
-    if (!grid) grid.emplace(plan, count, landing);
+    if (!grid) grid.emplace(plan.range, count, landing);
     make_keys(plan, *grid, landing, placed, &buffer.key[i]);
     for (int k = 0; k < ray_block; ++k) placed[6][k] = std::bit_cast<float>(index[k]);
     store(placed, &buffer.rays[i]);

@@ -25,6 +25,11 @@ struct Landing {
   RayColumn x, y;
 };
 
+// A rectangle of that plane.
+struct LandingRange {
+  float x_low, x_high, y_low, y_high;
+};
+
 // Moves the start of rays near the scene. Rays start where they cross a plane z = const of the
 // emitter's frame just before the scene. If no such plane has the whole scene behind it, they start
 // where they are emitted. At this plane the coordinates of rays that meet the scene are of the
@@ -57,6 +62,15 @@ struct alignas(32) Ray {
   uint32_t unused = 0;
 };
 
+// The ray in single precision.
+inline Ray make_ray(const Vec3& origin_m, const Vec3& direction, uint32_t sample) {
+  Ray ray{};
+  Eigen::Map<Eigen::Vector3f>(ray.origin_m) = origin_m.cast<float>();
+  Eigen::Map<Eigen::Vector3f>(ray.direction) = direction.cast<float>();
+  ray.sample = sample;
+  return ray;
+}
+
 // Memory for one batch, reused between batches.
 struct LaunchBuffer {
   std::vector<Ray> rays;        // in the order of emission
@@ -71,11 +85,11 @@ struct LaunchPlan {
   RayPlacement placement;
   std::optional<Targets> targets;  // only for parallel light
   // Range of landing points; beyond it the order of the rays does not matter.
-  float x_low, x_high, y_low, y_high;
+  LandingRange range;
   // Octants of directions in the body frame are numbered by the signs of those components that
   // occur with both signs. octant_step is the increment of the number for a negative x, y, z.
-  std::array<uint32_t, 3> octant_step;
-  uint32_t octants;
+  std::array<uint32_t, 3> octant_step = {};
+  uint32_t octants = 1;
 };
 
 // Plans 2^log2_rays rays (at least ray_block), which are one replicate of one beam.

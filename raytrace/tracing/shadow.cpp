@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <utility>
 
+#include "core/numerics/connected.h"
 #include "raytrace/tracing/traceable_scene_data.h"
 
 namespace photorque {
@@ -65,16 +64,11 @@ Ball ball_about(std::span<const TriangleCorners> triangles) {
 // Whether every edge belongs to two triangles that traverse it in opposite directions. Corners at
 // the same position count as one.
 bool is_closed(std::span<const TriangleCorners> triangles) {
-  using Place = std::array<double, 3>;
-  const auto place = [](const Vec3& p) { return Place{p.x(), p.y(), p.z()}; };
-  std::map<std::pair<Place, Place>, int> edges;  // number of traversals
-  for (const TriangleCorners& corners : triangles) {
-    for (size_t k = 0; k < 3; ++k) ++edges[{place(corners[k]), place(corners[(k + 1) % 3])}];
+  std::vector<Vec3> corners;
+  for (const TriangleCorners& three : triangles) {
+    corners.insert(corners.end(), three.begin(), three.end());
   }
-  return std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
-    const auto back = edges.find({edge.first.second, edge.first.first});
-    return edge.second == 1 && back != edges.end() && back->second == 1;
-  });
+  return edges_pair_up(welded(corners));
 }
 
 // Half-spaces whose intersection is the body with this surface, shrunk slightly against rounding.
@@ -111,6 +105,7 @@ void find_in_packets(const TraceableScene::Data& scene, std::span<const ShadowRa
   constexpr auto width = static_cast<size_t>(Width);
   alignas(64) std::array<int, width> valid;
   typename embree_seam::PacketType<Width>::shadow packet;
+  embree_seam::initialise<Width>(packet);
   for (size_t begin = 0; begin < rays.size(); begin += width) {
     const size_t count = std::min(width, rays.size() - begin);
     for (size_t i = 0; i < width; ++i) {
@@ -122,12 +117,7 @@ void find_in_packets(const TraceableScene::Data& scene, std::span<const ShadowRa
       packet.dir_x[i] = ray.direction[0];
       packet.dir_y[i] = ray.direction[1];
       packet.dir_z[i] = ray.direction[2];
-      packet.tnear[i] = 0.0f;
       packet.tfar[i] = ray.length_m;
-      packet.time[i] = 0.0f;
-      packet.mask[i] = 0xffffffffu;
-      packet.id[i] = 0;
-      packet.flags[i] = 0;
     }
     embree_seam::Query::occluded(scene.embree, valid.data(), packet);
     for (size_t i = 0; i < count; ++i) lit[begin + i] = packet.tfar[i] >= 0.0f ? 1 : 0;
@@ -247,6 +237,14 @@ bool Shaft::is_blocked_by(const Occluder& occluder) const {
     }
   }
   return outside && low <= high;
+}
+
+ShadowRay shadow_ray(const Vec3& origin_m, const Vec3& direction, double length_m) {
+  ShadowRay ray{};
+  Eigen::Map<Eigen::Vector3f>(ray.origin_m) = origin_m.cast<float>();
+  Eigen::Map<Eigen::Vector3f>(ray.direction) = direction.cast<float>();
+  ray.length_m = static_cast<float>(length_m);
+  return ray;
 }
 
 void find_shadows(const TraceableScene& scene, std::span<const ShadowRay> rays,

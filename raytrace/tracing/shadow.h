@@ -70,6 +70,8 @@ struct ShadowRay {
   float length_m;
 };
 
+ShadowRay shadow_ray(const Vec3& origin_m, const Vec3& direction, double length_m);
+
 // Maximum number of rays per call of find_shadows().
 inline constexpr int shadow_batch = 256;
 

@@ -118,24 +118,17 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
   // Its id equals the instance's index: both count from 0.
   rtcAttachGeometry(data.embree, geometry);
   rtcReleaseGeometry(geometry);
-  const int bands = data.scene.bands.count();
-  data.black.push_back(is_black(data.scene.surfaces[instance.back_surface], bands) ? 1 : 0);
-  data.black.push_back(is_black(data.scene.surfaces[instance.front_surface], bands) ? 1 : 0);
-  for (size_t b = 0; b < max_bands; ++b) {
-    data.absorbed_fraction[b].push_back(data.scene.surfaces[instance.back_surface].absorbed[b]);
-    data.absorbed_fraction[b].push_back(data.scene.surfaces[instance.front_surface].absorbed[b]);
+  for (const bool front : {false, true}) {
+    const OpticalSurface& surface = data.scene.surface(instance, front);
+    data.black.push_back(is_black(surface, data.scene.bands.count()) ? 1 : 0);
+    for (size_t b = 0; b < max_bands; ++b) {
+      data.absorbed_fraction[b].push_back(surface.absorbed[b]);
+    }
+    data.albedo_law.push_back(surface.bsdf == nullptr ? nullptr : surface.bsdf->law.get());
   }
 }
 
 void note_bsdfs(TraceableScene::Data& data) {
-  const auto law_of = [&](uint32_t surface) -> const AlbedoLaw* {
-    const Bsdf* bsdf = data.scene.surfaces[surface].bsdf.get();
-    return bsdf == nullptr ? nullptr : bsdf->law.get();
-  };
-  for (const Instance& instance : data.scene.instances) {
-    data.albedo_law.push_back(law_of(instance.back_surface));
-    data.albedo_law.push_back(law_of(instance.front_surface));
-  }
   if (std::all_of(data.albedo_law.begin(), data.albedo_law.end(),
                   [](const AlbedoLaw* law) { return law == nullptr; })) {
     data.albedo_law.clear();

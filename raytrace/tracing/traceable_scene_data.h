@@ -50,11 +50,15 @@ struct TraceableScene::Data {
   // Index of an instance's back (`front` = 0) or front (1).
   static size_t side(uint32_t instance, uint8_t front) { return 2 * instance + front; }
   const OpticalSurface& surface(uint32_t instance, uint8_t front) const {
-    const Instance& part = scene.instances[instance];
-    return scene.surfaces[front != 0 ? part.front_surface : part.back_surface];
+    return scene.surface(scene.instances[instance], front != 0);
   }
   const TrianglePlane& plane(uint32_t instance, uint32_t triangle) const {
     return planes[first_triangle[instance] + triangle];
+  }
+  // Normal on the front or the back of a triangle.
+  Vec3 normal(uint32_t instance, uint32_t triangle, uint8_t front) const {
+    const Eigen::Map<const Vec3> outward(plane(instance, triangle).normal);
+    return front != 0 ? Vec3(outward) : Vec3(-outward);
   }
 };
 

@@ -56,7 +56,7 @@ struct TraceOptions {
   int max_depth = 64;    // interactions after which a ray's remaining power is truncated, ≥ 1
   double cutoff = 1e-9;  // truncate rays with less than this fraction of their first power
   int threads = 0;       // 0: all
-  std::function<void(double)> progress;  // called with the finished fraction, from any thread
+  std::function<void(double)> progress = {};  // called with the finished fraction, from any thread
   // Called with all hits, from any thread. Hits of one part of the work come from one thread at a
   // time, in an order that does not depend on the number of threads. Their powers are those of one
   // replicate, which carries all of the light.

@@ -17,13 +17,7 @@ Ray nearby_ray(const TraceableScene::Data& scene, const Sight& sight, size_t ind
   const double ahead =
       (scene.centre_m - sight.origin_m).dot(sight.direction) - 1.001 * scene.radius_m;
   const Vec3 origin = sight.origin_m + std::max(0.0, ahead) * sight.direction;
-  Ray ray{};
-  for (int k = 0; k < 3; ++k) {
-    ray.origin_m[k] = static_cast<float>(origin[k] - scene.centre_m[k]);
-    ray.direction[k] = static_cast<float>(sight.direction[k]);
-  }
-  ray.sample = static_cast<uint32_t>(index);
-  return ray;
+  return make_ray(origin - scene.centre_m, sight.direction, static_cast<uint32_t>(index));
 }
 
 VisiblePoint visible_point(const TraceableScene::Data& scene, const Hits& hits, int i,
@@ -34,9 +28,8 @@ VisiblePoint visible_point(const TraceableScene::Data& scene, const Hits& hits, 
   point.instance = hits.instance[i];
   point.triangle = hits.triangle[i];
   point.barycentric = {hits.barycentric[0][i], hits.barycentric[1][i]};
-  point.position_m = {hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]};
-  const double* n = scene.plane(point.instance, point.triangle).normal;
-  point.normal = (point.front ? 1.0 : -1.0) * Vec3(n[0], n[1], n[2]);
+  point.position_m = hits.position_at_m(static_cast<size_t>(i));
+  point.normal = scene.normal(point.instance, point.triangle, hits.front[i]);
   point.distance_m = (point.position_m - sight.origin_m).norm();
   return point;
 }
@@ -106,16 +99,12 @@ std::vector<float> shown_rays(const TraceableScene& scene, const std::vector<Bea
   SampleBlock samples;
   RayBlock block;
   for (size_t i = 0; i < beams.size(); i += stride) {
-    std::array<uint32_t*, sobol_dimensions> out;
-    for (size_t d = 0; d < out.size(); ++d) out[d] = samples.bits[d].data();
-    sobol_points({1, i, 0}, 0, out);
+    sobol_points({1, i, 0}, 0, samples.columns());
     beams[i].emitter->emit(samples, block);
     const RigidTransform body_from_emitter = body_from_lab * beams[i].lab_from_emitter;
     for (size_t k = 0; k < each; ++k) {
-      const Vec3 origin(block.origin_m[0][k], block.origin_m[1][k], block.origin_m[2][k]);
-      const Vec3 direction(block.direction[0][k], block.direction[1][k], block.direction[2][k]);
-      sights.push_back(
-          {body_from_emitter.point(origin), body_from_emitter.direction(direction.normalized())});
+      sights.push_back({body_from_emitter.point(block.origin_at_m(k)),
+                        body_from_emitter.direction(block.direction_at(k).normalized())});
     }
   }
   const auto seen = look(scene, sights.size(), [&](size_t i) { return sights[i]; });

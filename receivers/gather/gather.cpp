@@ -31,22 +31,25 @@ class SampledFlux {
 
 // Largest relative standard error of the irradiance of bins above the floor.
 double worst_error_of(const FluxMapReceiver& map, const BinSums& sums, double floor) {
-  const auto bands = static_cast<size_t>(map.bands().count());
   std::vector<Estimate> bins;
   std::vector<double> density(static_cast<size_t>(sums.replicates));
   double peak = 0.0;
   for (size_t bin = 0; bin < map.grid().bins(); ++bin) {
     const double area_m2 = map.grid().area_m2[bin];
     if (!(area_m2 > 0.0)) continue;
+    // Incident power in all bands.
+    const auto all_bands_W = [&](std::span<const double> entries) {
+      double sum_W = 0.0;
+      for (int band = 0; band < map.bands().count(); ++band) {
+        sum_W += entries[map.entry(bin, static_cast<size_t>(band))];
+      }
+      return sum_W;
+    };
     for (size_t r = 0; r < density.size(); ++r) {
-      const auto all = sums.of(static_cast<int>(r));
-      density[r] = 0.0;
-      for (size_t band = 0; band < bands; ++band) density[r] += all[map.entry(bin, band)];
-      density[r] /= area_m2;
+      density[r] = all_bands_W(sums.of(static_cast<int>(r))) / area_m2;
     }
-    double bound_W = 0.0;
-    for (size_t band = 0; band < bands; ++band) bound_W += sums.bound_of(map.entry(bin, band));
-    bins.push_back(with_bound(estimate_from_replicates(density), bound_W / area_m2));
+    const double bound_W_m2 = all_bands_W(sums.bound) / area_m2;
+    bins.push_back(with_bound(estimate_from_replicates(density), bound_W_m2));
     peak = std::max(peak, bins.back().value);
   }
   double worst = 0.0;
@@ -90,9 +93,8 @@ Gathered gather_on(const Gathering& gathering, const FluxMapReceiver& map,
 // Whether absorption depends on the angle of incidence (glass), which bins do not record.
 bool absorbs_by_angle(const Scene& scene, const SurfaceGrid& grid) {
   return std::any_of(grid.instances.begin(), grid.instances.end(), [&](uint32_t instance) {
-    const Instance& of = scene.instances[instance];
-    const uint32_t surface = grid.side == Side::back ? of.back_surface : of.front_surface;
-    const Bsdf* bsdf = scene.surfaces[surface].bsdf.get();
+    const bool front = grid.side != Side::back;
+    const Bsdf* bsdf = scene.surface(scene.instances[instance], front).bsdf.get();
     return bsdf != nullptr && bsdf->law != nullptr;
   });
 }

@@ -130,6 +130,13 @@ bool PlacedLamp::sampled_by_direction(double height_m) const {
   return light_->parallel() || height_m * std::tan(half) < 0.7 * light_->radius_m();
 }
 
+double PlacedLamp::sampled_W_m2(const RayBlock& rays, size_t i, bool directed, const Vec3& at_m,
+                                const Vec3& normal, Vec3& from_m) const {
+  if (directed) return along_direction_W_m2(rays.direction_at(i), at_m, normal, from_m);
+  from_m = rays.origin_at_m(i);
+  return from_point_W_m2(from_m, at_m, normal);
+}
+
 double PlacedLamp::along_direction_W_m2(const Vec3& direction, const Vec3& at_m, const Vec3& normal,
                                         Vec3& from_m) const {
   const double facing = -normal.dot(direction);

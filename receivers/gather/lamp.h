@@ -84,14 +84,17 @@ class PlacedLamp {
   // Whether rays to points at this height are sampled by direction: for apertures that are wide
   // compared with the spread of the beam. Other rays are sampled by the aperture's point.
   bool sampled_by_direction(double height_m) const;
-  // Irradiance that one drawn direction represents, for an emitter that draws directions by its
-  // intensity. Sets `from_m` to the start of the line to `at_m`. 0 if no light arrives from there.
-  double along_direction_W_m2(const Vec3& direction, const Vec3& at_m, const Vec3& normal,
-                              Vec3& from_m) const;
-  // Irradiance that one uniformly drawn point of the aperture represents.
-  double from_point_W_m2(const Vec3& from_m, const Vec3& at_m, const Vec3& normal) const;
+  // Irradiance that ray i of the emitter represents at a point: by its direction (`directed`), or
+  // by the point of the aperture from which it starts. Sets `from_m` to the start of the line to
+  // `at_m`. 0 if no light arrives from there.
+  double sampled_W_m2(const RayBlock& rays, size_t i, bool directed, const Vec3& at_m,
+                      const Vec3& normal, Vec3& from_m) const;
 
  private:
+  double along_direction_W_m2(const Vec3& direction, const Vec3& at_m, const Vec3& normal,
+                              Vec3& from_m) const;
+  double from_point_W_m2(const Vec3& from_m, const Vec3& at_m, const Vec3& normal) const;
+
   std::shared_ptr<const DiscLight> light_;
   RigidTransform body_from_emitter_, emitter_from_body_;
   BandValues fraction_{};

@@ -16,48 +16,42 @@ struct CellPiece {
   SurfacePatch patch;
 };
 
-Vec2 cell_of(const SurfaceGrid& grid, const Vec3& position_m) {
-  return {
-      (grid.u_axis_body.dot(position_m) - grid.u_low) / (grid.u_high - grid.u_low) * grid.width,
-      (grid.v_axis_body.dot(position_m) - grid.v_low) / (grid.v_high - grid.v_low) * grid.height};
+// Calls add(bin, corners) for the convex pieces of a face in the bins; see clip_to_cells().
+template <typename Add>
+void clip_face(const Scene& scene, const SurfaceGrid& grid, const SurfaceFace& face,
+               const Add& add) {
+  clip_to_cells(corners_in_bins(grid, scene, face), grid.width, grid.height,
+                [&](int column, int row, std::span<const Vec2> polygon) {
+                  const size_t bin = grid.bin_at(column, row);
+                  if (grid.area_m2[bin] > 0.0) add(bin, polygon);
+                });
 }
 
-// Instances in each bin.
-struct BinContent {
-  static constexpr uint32_t none = ~0u, several = none - 1;
-  std::vector<uint32_t> instance;  // by bin
+constexpr uint32_t no_instance = ~0u, several_instances = no_instance - 1;
 
-  BinContent(const SurfaceGrid& grid, std::span<const SurfaceFace> faces)
-      : instance(grid.bins(), none) {
-    for (const SurfaceFace& face : faces) {
-      clip_face(grid, face, [&](size_t bin, std::span<const Vec2>) {
-        uint32_t& here = instance[bin];
-        here = here == none || here == face.instance ? face.instance : several;
-      });
-    }
-  }
-
-  template <typename Add>  // (bin, weights of the corners of a convex polygon)
-  static void clip_face(const SurfaceGrid& grid, const SurfaceFace& face, const Add& add) {
-    std::array<Vec2, 3> corners;
-    for (size_t k = 0; k < 3; ++k) corners[k] = cell_of(grid, face.corner_body_m[k]);
-    clip_to_cells(corners, grid.width, grid.height, [&](int column, int row, auto polygon) {
-      const size_t bin =
-          static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(column);
-      if (grid.area_m2[bin] > 0.0) add(bin, polygon);
+// The instance in each bin.
+std::vector<uint32_t> instances_in_bins(const Scene& scene, const SurfaceGrid& grid,
+                                        std::span<const SurfaceFace> faces) {
+  std::vector<uint32_t> instances(grid.bins(), no_instance);
+  for (const SurfaceFace& face : faces) {
+    clip_face(scene, grid, face, [&](size_t bin, std::span<const Vec2>) {
+      uint32_t& here = instances[bin];
+      const bool only = here == no_instance || here == face.instance;
+      here = only ? face.instance : several_instances;
     });
   }
-};
+  return instances;
+}
 
 // Adds the pieces of a face in the bins that are `wanted`, as fans of triangles.
-void add_pieces(const SurfaceGrid& grid, const SurfaceFace& face, const std::vector<bool>& wanted,
-                std::vector<CellPiece>& pieces) {
+void add_pieces(const Scene& scene, const SurfaceGrid& grid, const SurfaceFace& face,
+                const std::vector<bool>& wanted, std::vector<CellPiece>& pieces) {
   // Not a structured binding: Clang 14 cannot capture one.
   const Vec3 &a = face.corner_body_m[0], &b = face.corner_body_m[1], &c = face.corner_body_m[2];
   const auto place = [&](const Vec2& weight) {
     return Vec3(a + weight.x() * (b - a) + weight.y() * (c - a));
   };
-  BinContent::clip_face(grid, face, [&](size_t bin, std::span<const Vec2> polygon) {
+  clip_face(scene, grid, face, [&](size_t bin, std::span<const Vec2> polygon) {
     if (!wanted[bin]) return;
     const Vec3 origin = place(polygon[0]);
     for (size_t i = 2; i < polygon.size(); ++i) {
@@ -86,7 +80,7 @@ std::vector<uint32_t> sort_by_bin(std::vector<CellPiece>& pieces, size_t bins) {
 // whether it does.
 bool fill_whole(const SurfaceGrid& grid, const BinPatches& plane, size_t bin, uint32_t instance,
                 SurfacePatch& whole) {
-  if (instance >= BinContent::several) return false;
+  if (instance >= several_instances) return false;
   const double du = (grid.u_high - grid.u_low) / grid.width;
   const double dv = (grid.v_high - grid.v_low) / grid.height;
   // The plane of the faces may be inclined to the plane of the grid.
@@ -113,12 +107,6 @@ bool fill_whole(const SurfaceGrid& grid, const BinPatches& plane, size_t bin, ui
 
 }  // namespace
 
-Vec3 SurfacePatch::at(double s, double t) const {
-  if (!triangle) return origin_m + s * edge1_m + t * edge2_m;
-  const double root = std::sqrt(s);
-  return origin_m + root * (1.0 - t) * edge1_m + root * t * edge2_m;
-}
-
 bool is_flat(const Scene& scene, const SurfaceGrid& grid) {
   if (grid.over != SurfaceGrid::Over::plane) return false;
   const std::vector<SurfaceFace> faces = faces_of(scene, grid.instances, grid.facing_body);
@@ -139,24 +127,24 @@ BinPatches bin_patches(const Scene& scene, const SurfaceGrid& grid) {
   Vec3 area = Vec3::Zero();
   for (const SurfaceFace& face : faces) area += face.area_body_m2;
   all.normal = area.normalized();
-  const BinContent content(grid, faces);
+  const std::vector<uint32_t> instances = instances_in_bins(scene, grid, faces);
   std::vector<bool> in_part(grid.bins());
   SurfacePatch whole;
   for (size_t bin = 0; bin < grid.bins(); ++bin) {
-    in_part[bin] = content.instance[bin] != BinContent::none &&
-                   !fill_whole(grid, all, bin, content.instance[bin], whole);
+    in_part[bin] =
+        instances[bin] != no_instance && !fill_whole(grid, all, bin, instances[bin], whole);
   }
   std::vector<CellPiece> pieces;
   if (std::find(in_part.begin(), in_part.end(), true) != in_part.end()) {
-    for (const SurfaceFace& face : faces) add_pieces(grid, face, in_part, pieces);
+    for (const SurfaceFace& face : faces) add_pieces(scene, grid, face, in_part, pieces);
   }
   const std::vector<uint32_t> begin = sort_by_bin(pieces, grid.bins());
   all.patches.reserve(grid.bins());
   for (size_t bin = 0; bin < grid.bins(); ++bin) {
     all.first.push_back(static_cast<uint32_t>(all.patches.size()));
-    if (content.instance[bin] == BinContent::none) continue;
+    if (instances[bin] == no_instance) continue;
     if (!in_part[bin]) {
-      fill_whole(grid, all, bin, content.instance[bin], whole);
+      fill_whole(grid, all, bin, instances[bin], whole);
       all.patches.push_back(whole);
     }
     for (uint32_t p = begin[bin]; p < begin[bin + 1]; ++p) all.patches.push_back(pieces[p].patch);

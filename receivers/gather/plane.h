@@ -22,9 +22,6 @@ struct SurfacePatch {
   double area_m2 = 0.0;
   uint32_t instance = 0;
   bool triangle = false;
-
-  // Area-preserving map of the unit square to the patch.
-  Vec3 at(double s, double t) const;
 };
 
 // Patches in the order of the bins.
@@ -71,8 +68,8 @@ class GatherPlane {
   const Bands& bands() const { return bands_; }
   // Optical surface of an instance on this side.
   const OpticalSurface& surface(uint32_t instance) const {
-    const Instance& of = scene_.scene().instances[instance];
-    return scene_.scene().surfaces[side_ == Side::back ? of.back_surface : of.front_surface];
+    const Scene& scene = scene_.scene();
+    return scene.surface(scene.instances[instance], side_ != Side::back);
   }
   const BinPatches& patches() const { return patches_; }
   const Vec3& normal() const { return patches_.normal; }  // of the lit side
@@ -81,11 +78,7 @@ class GatherPlane {
   Vec3 point_m(double column, double row) const {
     return corner_m_ + column * column_m_ + row * row_m_;
   }
-  // Index of a bin.
-  size_t bin_at(int column, int row) const {
-    return static_cast<size_t>(row) * static_cast<size_t>(grid_.width) +
-           static_cast<size_t>(column);
-  }
+  size_t bin_at(int column, int row) const { return grid_.bin_at(column, row); }
   // Ball that contains all bins of a tile.
   Ball ball_of(const BinTile& tile) const;
   // Whether the bin is one whole parallelogram of the grid.

@@ -101,8 +101,6 @@ class ShadedSampler {
 
   // Samples all pairs once with the points of `stream`. Returns the number of rays.
   uint64_t run(const SobolStream& stream, std::span<double> entries) {
-    std::array<uint32_t*, sobol_dimensions> out;
-    for (size_t k = 0; k < sobol_dimensions; ++k) out[k] = samples_.bits[k].data();
     // Several bins share a block of points, or one bin takes several blocks.
     const size_t in_block = std::min<size_t>(points_, ray_block);
     const size_t per_block = ray_block / in_block, blocks = points_ / in_block;
@@ -111,7 +109,7 @@ class ShadedSampler {
     for (size_t begin = 0; begin < bins_.size(); begin += per_block) {
       const auto some = std::span(bins_).subspan(begin, std::min(per_block, bins_.size() - begin));
       for (size_t pass = 0; pass < blocks; ++pass, ++block) {
-        sobol_points(stream, block * ray_block, out);
+        sobol_points(stream, block * ray_block, samples_.columns());
         lamp_.light().emitter().emit(samples_, emitted_);
         count_ = 0;
         for (size_t p = 0; p < some.size(); ++p) add_lines(some[p], p * in_block, in_block);
@@ -170,7 +168,8 @@ class ShadedSampler {
       }
       const Vec3 at = placed.origin_m + s * placed.edge1_m + t * placed.edge2_m;
       Vec3 from;
-      const double density = bin.directed ? weigh_direction(i, at, from) : weigh_point(i, at, from);
+      const double density =
+          lamp_.sampled_W_m2(emitted_, i, bin.directed, at, lamp_.normal_emitter(), from);
       if (!(density > 0.0)) continue;
       bin_[count_] = bin.bin;
       instance_[count_] = placed.patch->instance;
@@ -180,32 +179,13 @@ class ShadedSampler {
     }
   }
 
-  // Irradiance for the direction of ray i of the block; sets `from` to the start of the line to
-  // `at`.
-  double weigh_direction(size_t i, const Vec3& at, Vec3& from) const {
-    const Vec3 direction(emitted_.direction[0][i], emitted_.direction[1][i],
-                         emitted_.direction[2][i]);
-    return lamp_.along_direction_W_m2(direction, at, lamp_.normal_emitter(), from);
-  }
-
-  // Irradiance for the aperture point of ray i; sets `from` to this point.
-  double weigh_point(size_t i, const Vec3& at, Vec3& from) const {
-    from = {emitted_.origin_m[0][i], emitted_.origin_m[1][i], emitted_.origin_m[2][i]};
-    return lamp_.from_point_W_m2(from, at, lamp_.normal_emitter());
-  }
-
   void add_ray(const Vec3& at, const Vec3& from) {
     const Vec3 start = at + ray_offset_m_ * lamp_.normal_emitter();
     const Vec3 between = from - start;
     const double length = between.norm(), per_length = 1.0 / length;
-    const Vec3 origin = body_from_emitter_ * start + scene_from_emitter_m_;
-    const Vec3 direction = body_from_emitter_ * (per_length * between);
-    ShadowRay& ray = shadow_[count_++];
-    for (int k = 0; k < 3; ++k) {
-      ray.origin_m[k] = static_cast<float>(origin[k]);
-      ray.direction[k] = static_cast<float>(direction[k]);
-    }
-    ray.length_m = static_cast<float>(length - ray_offset_m_);
+    shadow_[count_++] =
+        shadow_ray(body_from_emitter_ * start + scene_from_emitter_m_,
+                   body_from_emitter_ * (per_length * between), length - ray_offset_m_);
   }
 
   // Traces the rays and adds the contributions of consecutive rays to the same bin together.

@@ -15,6 +15,11 @@ namespace {
 
 constexpr size_t torque_axes = 3;
 
+// Adds a torque to the entries of a bin.
+void add_to_bin(const Vec3& torque_N_m, size_t bin, std::span<double> entries) {
+  Eigen::Map<Vec3>(entries.data() + bin * torque_axes) += torque_N_m;
+}
+
 // Quantity of ShadedSampler: the torque of light about a point.
 class Torque {
  public:
@@ -35,9 +40,7 @@ class Torque {
   }
   void add(const Vec3& torque_N_m, const GatherLamp&, size_t bin, uint32_t,
            std::span<double> entries) const {
-    for (size_t axis = 0; axis < torque_axes; ++axis) {
-      entries[bin * torque_axes + axis] += torque_N_m[static_cast<Eigen::Index>(axis)];
-    }
+    add_to_bin(torque_N_m, bin, entries);
   }
 
   const Vec3& about_m() const { return about_m_; }
@@ -144,11 +147,8 @@ class OpenTorque {
   void add_bin(size_t bin, const Vec3& density_N_m, double error_N_m, std::span<double> torque_N_m,
                std::span<double> bound_N_m) const {
     const double area_m2 = plane_.patches().of(bin)[0].area_m2;
-    for (size_t axis = 0; axis < torque_axes; ++axis) {
-      torque_N_m[bin * torque_axes + axis] +=
-          area_m2 * density_N_m[static_cast<Eigen::Index>(axis)];
-      bound_N_m[bin * torque_axes + axis] += area_m2 * error_N_m;
-    }
+    add_to_bin(area_m2 * density_N_m, bin, torque_N_m);
+    add_to_bin(Vec3::Constant(area_m2 * error_N_m), bin, bound_N_m);
   }
 
   // Integrates over each patch by nested integrals; the inner one is divided at the kinks of the
@@ -184,11 +184,8 @@ class OpenTorque {
         low = high;
       }
       const double area_m2 = patch.area_m2 * (patch.triangle ? 2.0 : 1.0);
-      for (size_t axis = 0; axis < torque_axes; ++axis) {
-        torque_N_m[bin * torque_axes + axis] +=
-            area_m2 * mean.value[static_cast<Eigen::Index>(axis)];
-        bound_N_m[bin * torque_axes + axis] += area_m2 * (mean.error + 2.0 * inner_error);
-      }
+      add_to_bin(area_m2 * mean.value.matrix(), bin, torque_N_m);
+      add_to_bin(Vec3::Constant(area_m2 * (mean.error + 2.0 * inner_error)), bin, bound_N_m);
     }
     return patches.empty() ? 0 : 1;
   }
@@ -225,11 +222,13 @@ void add_side(const TraceableScene& scene, const RigidTransform& lab_from_body,
 }  // namespace
 
 bool can_gather_torque(const Scene& scene, const SurfaceGrid& grid, std::span<const Beam> beams) {
-  const auto plain = [&](uint32_t surface) { return scene.surfaces[surface].bsdf == nullptr; };
+  const auto plain = [&](const Instance& instance, bool front) {
+    return scene.surface(instance, front).bsdf == nullptr;
+  };
   return is_gatherable(scene, grid, beams) &&
          std::all_of(grid.instances.begin(), grid.instances.end(), [&](uint32_t instance) {
            const Instance& of = scene.instances[instance];
-           return plain(of.front_surface) && plain(of.back_surface);
+           return plain(of, true) && plain(of, false);
          });
 }
 

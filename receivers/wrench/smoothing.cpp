@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constants.h"
+
 namespace photorque {
 namespace {
 
@@ -10,8 +12,7 @@ constexpr Eigen::Index per_wrench = std::tuple_size_v<WrenchComponents>;
 
 // Azimuths without the last one if it repeats the first.
 std::span<const double> once_around(const std::vector<double>& around_rad) {
-  constexpr double turn = 6.28318530717958647693;
-  const bool closed = std::abs(around_rad.back() - around_rad.front() - turn) < 1e-9;
+  const bool closed = std::abs(around_rad.back() - around_rad.front() - 2.0 * pi) < 1e-9;
   return std::span(around_rad).first(around_rad.size() - (closed ? 1 : 0));
 }
 

@@ -234,20 +234,31 @@ double stated_deg(double angle_rad) {
   return std::round(1e10 * angle_rad / degree_rad) / 1e10;
 }
 
+void add_components(Table& table, const std::string& stem, const std::string& unit,
+                    const std::vector<Vec3>& values) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> components;
+    for (const Vec3& value : values) components.push_back(value[axis]);
+    table.add(stem + "_" + "xyz"[axis] + "_" + unit, components);
+  }
+}
+
 namespace {
 
 // A vector column of a WrenchTable, force or torque, with its standard error.
 struct VectorColumn {
-  const char* name;
+  std::string name;
   const char* unit_suffix;
   const char* unit;
+  const char* of_component;  // words before the axis in a title
   const std::vector<Vec3>* value;
   const std::vector<Vec3>* error;
 };
 
 std::array<VectorColumn, 2> vector_columns(const WrenchTable& table) {
-  return {{{"force", "N", "N", &table.force_body_N, &table.force_error_N},
-           {"torque", "N_m", "N m", &table.torque_body_N_m, &table.torque_error_N_m}}};
+  return {{{"force", "N", "N", "Force along body ", &table.force_body_N, &table.force_error_N},
+           {"torque", "N_m", "N m", "Torque about body ", &table.torque_body_N_m,
+            &table.torque_error_N_m}}};
 }
 
 struct AngleNames {
@@ -275,16 +286,11 @@ Table rows(const WrenchTable& table, const std::string& name, const std::string&
           .set(names.polar + "_deg", stated_deg(polar_rad));
     }
   }
-  const auto add = [&](const std::string& stem, const char* unit, const std::vector<Vec3>& values) {
-    for (int axis = 0; axis < 3; ++axis) {
-      std::vector<double> components;
-      for (const Vec3& value : values) components.push_back(value[axis]);
-      result.add(stem + "_" + letter(axis) + "_" + unit, components);
-    }
-  };
-  for (const VectorColumn& c : vector_columns(table)) add(c.name, c.unit_suffix, *c.value);
   for (const VectorColumn& c : vector_columns(table)) {
-    add(c.name + std::string("_error"), c.unit_suffix, *c.error);
+    add_components(result, c.name, c.unit_suffix, *c.value);
+  }
+  for (const VectorColumn& c : vector_columns(table)) {
+    add_components(result, c.name + "_error", c.unit_suffix, *c.error);
   }
   return result;
 }
@@ -308,9 +314,8 @@ Map component_map(const WrenchTable& table, const VectorColumn& column, int axis
   const double half_polar_rad = 0.5 * regular_step_rad(table.polar_rad);
   const double half_around_rad = 0.5 * regular_step_rad(table.around_rad);
   Map map;
-  map.name = column.name + ("_" + letter(axis)) + "_" + name;
-  map.title = (std::string(column.name) == "force" ? "Force along " : "Torque about ") +
-              ("body " + letter(axis)) + (name == "body" ? "" : " on " + name);
+  map.name = column.name + "_" + "xyz"[axis] + "_" + name;
+  map.title = column.of_component + letter(axis) + (name == "body" ? "" : " on " + name);
   map.unit = column.unit;
   // If the table covers the whole circle, its first nodes are repeated at the end of the picture.
   const size_t around_nodes = table.around_rad.size();
@@ -342,11 +347,11 @@ Map component_map(const WrenchTable& table, const VectorColumn& column, int axis
 Plot component_plot(const WrenchTable& table, const VectorColumn& column, const std::string& name,
                     const std::string& source) {
   Plot plot;
-  plot.name = std::string(column.name) + "_" + name;
-  plot.title = (std::string(column.name) == "force" ? "Force of " : "Torque of ") + source +
-               " on " + name + ", body frame";
+  plot.name = column.name + "_" + name;
+  plot.title = (column.name == "force" ? "Force of " : "Torque of ") + source + " on " + name +
+               ", body frame";
   plot.x_label = angle_names(table).polar + " [deg]";
-  plot.y_label = std::string(column.name) + " [" + column.unit + "]";
+  plot.y_label = column.name + " [" + column.unit + "]";
   for (int axis = 0; axis < 3; ++axis) {
     Plot::Curve curve;
     curve.label = letter(axis);
@@ -368,8 +373,7 @@ Quantity largest(const VectorColumn& column, const std::string& name) {
     if (!(value.norm() > longest.value)) continue;
     longest = {value.norm(), value.normalized().cwiseProduct((*column.error)[i]).norm()};
   }
-  const std::string unit = std::string(column.name) == "force" ? "N" : "N_m";
-  return {std::string("largest_") + column.name + "_" + name + "_" + unit, longest};
+  return {"largest_" + column.name + "_" + name + "_" + column.unit_suffix, longest};
 }
 
 }  // namespace

@@ -22,6 +22,10 @@ namespace photorque {
 std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name,
                             const std::string& source = "light");
 
+// Adds the columns STEM_x_UNIT, STEM_y_UNIT and STEM_z_UNIT to a table.
+void add_components(Table& table, const std::string& stem, const std::string& unit,
+                    const std::vector<Vec3>& values);
+
 // An angle in degrees without rounding residue: −60 instead of −60.00000000000001.
 double stated_deg(double angle_rad);
 

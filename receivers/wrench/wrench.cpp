@@ -3,6 +3,7 @@
 #include <set>
 
 #include "receivers/kind.h"
+#include "receivers/wrench/table_product.h"
 
 namespace photorque {
 namespace {
@@ -30,28 +31,12 @@ std::vector<std::string> unique_names(const Scene& scene, const std::vector<uint
 void add_run(const Hits& hits, int begin, int end, const Vec3& about_m, std::span<double> sums) {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
-    const Vec3 f(hits.force_N[0][i], hits.force_N[1][i], hits.force_N[2][i]);
-    const Vec3 r(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
+    const Vec3 f = hits.force_at_N(i);
     force += f;
-    torque += (r - about_m).cross(f);
+    torque += (hits.position_at_m(i) - about_m).cross(f);
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    sums[static_cast<size_t>(axis)] += force[axis];
-    sums[static_cast<size_t>(axis) + 3] += torque[axis];
-  }
-}
-
-std::string component(const std::string& kind, int axis) {
-  return kind + "_" + std::string(1, "xyz"[axis]);
-}
-
-void add_columns(Table& table, const std::vector<WrenchEstimate>& wrenches, const std::string& kind,
-                 const std::string& unit, const std::function<Vec3(const WrenchEstimate&)>& value) {
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (const WrenchEstimate& wrench : wrenches) values.push_back(value(wrench)[axis]);
-    table.add(component(kind, axis) + "_" + unit, values);
-  }
+  Eigen::Map<Vec3>(sums.data()) += force;
+  Eigen::Map<Vec3>(sums.data() + 3) += torque;
 }
 
 }  // namespace
@@ -146,17 +131,15 @@ Product WrenchReceiver::product(const BinSums& sums) const {
 
 std::vector<Quantity> wrench_quantities(const WrenchEstimate& wrench, const std::string& name) {
   const std::string where = "_" + name + (wrench.mean.frame == Frame::body ? "_body" : "_lab");
-  const Vec3 force_error_N = wrench.force_error_N(), torque_error_N_m = wrench.torque_error_N_m();
   std::vector<Quantity> quantities;
-  quantities.reserve(wrench_components);
-  for (int axis = 0; axis < 3; ++axis) {
-    quantities.push_back({component("force", axis) + where + "_N",
-                          {wrench.mean.force_N[axis], force_error_N[axis]}});
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    quantities.push_back({component("torque", axis) + where + "_N_m",
-                          {wrench.mean.torque_N_m[axis], torque_error_N_m[axis]}});
-  }
+  const auto add = [&](const char* kind, const char* unit, const Vec3& value, const Vec3& error) {
+    for (int axis = 0; axis < 3; ++axis) {
+      quantities.push_back(
+          {std::string(kind) + "xyz"[axis] + where + unit, {value[axis], error[axis]}});
+    }
+  };
+  add("force_", "_N", wrench.mean.force_N, wrench.force_error_N());
+  add("torque_", "_N_m", wrench.mean.torque_N_m, wrench.torque_error_N_m());
   return quantities;
 }
 
@@ -164,12 +147,17 @@ Table wrench_rows(const std::vector<WrenchEstimate>& wrenches,
                   const std::vector<std::string>& names, const std::string& name) {
   Table table = Table::of("wrench_" + name, "Force and torque of light on " + name);
   table.add("part", names);
-  using W = WrenchEstimate;
-  add_columns(table, wrenches, "force", "N", [](const W& w) { return w.mean.force_N; });
-  add_columns(table, wrenches, "torque", "N_m", [](const W& w) { return w.mean.torque_N_m; });
-  add_columns(table, wrenches, "force_error", "N", [](const W& w) { return w.force_error_N(); });
-  add_columns(table, wrenches, "torque_error", "N_m",
-              [](const W& w) { return w.torque_error_N_m(); });
+  std::vector<Vec3> force, torque, force_error, torque_error;
+  for (const WrenchEstimate& wrench : wrenches) {
+    force.push_back(wrench.mean.force_N);
+    torque.push_back(wrench.mean.torque_N_m);
+    force_error.push_back(wrench.force_error_N());
+    torque_error.push_back(wrench.torque_error_N_m());
+  }
+  add_components(table, "force", "N", force);
+  add_components(table, "torque", "N_m", torque);
+  add_components(table, "force_error", "N", force_error);
+  add_components(table, "torque_error", "N_m", torque_error);
   return table;
 }
 

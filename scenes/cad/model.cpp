@@ -8,6 +8,7 @@
 #include "core/files.h"
 #include "core/provenance.h"
 #include "core/text/format.h"
+#include "core/text/parse.h"
 #include "scenes/cad/part.h"
 #include "scenes/gltf/writer.h"
 
@@ -19,10 +20,7 @@ constexpr std::array<std::pair<const char*, double>, 6> units = {
 
 // Assumed optics: half of the light is absorbed, half is scattered.
 SettingsNode unknown_optics() {
-  SettingsNode::Table table;
-  table["absorptance"] = {0.5};
-  table["diffuse"] = {0.5};
-  return {std::move(table)};
+  return {SettingsNode::Table{{"absorptance", {0.5}}, {"diffuse", {0.5}}}};
 }
 
 Vec3 in_body_axes(const Vec3& at, const CadConventions& conventions) {
@@ -60,10 +58,7 @@ GltfWriterModel as_gltf(std::vector<cad::Part> parts, const CadConventions& conv
 }  // namespace
 
 std::optional<CadFormat> cad_format(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  const std::string ending = lower_case(path.extension().string());
   if (ending == ".stl") return CadFormat::stl;
   if (ending == ".obj") return CadFormat::obj;
   return std::nullopt;

@@ -45,7 +45,6 @@ class TomlDocument {
   // first element of the array. Throws InputError if the name belongs to a value. The reference is
   // valid until the next call.
   SettingsNode::Table& append(const std::string& name);
-  // Sets a value of a table of this document; "a.b" is b in the table a. `beside` is a comment
   // Sets a value in a table of this document; "a.b" is b in the table a. `beside` is a comment
   // after the value.
   void set(SettingsNode::Table& table, std::string_view key, SettingsNode value,

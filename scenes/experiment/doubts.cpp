@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "core/constants.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -78,12 +78,10 @@ void add_unresolved_parts(const Scene& scene, std::vector<std::string>& lines) {
     if (count++ == 0 || size_m[i] < size_m[smallest]) smallest = i;
   }
   if (count == 0) return;
-  std::ostringstream line;
-  line.precision(2);
-  line << count << " part(s) are smaller than " << least_m
-       << " m, which is what single precision resolves in a scene of this size; the smallest is "
-       << scene.instances[smallest].path << ", " << size_m[smallest] << " m";
-  lines.push_back(line.str());
+  lines.push_back(
+      printed("%zu part(s) are smaller than %.2g m, which is what single precision resolves in a "
+              "scene of this size; the smallest is %s, %.2g m",
+              count, least_m, scene.instances[smallest].path.c_str(), size_m[smallest]));
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "core/constants.h"
 #include "core/files.h"
 #include "core/settings/files.h"
+#include "core/text/format.h"
 #include "receivers/kind.h"
 #include "scenes/experiment/doubts.h"
 #include "scenes/experiment/keys.h"
@@ -33,32 +33,28 @@ void require_spectrum_inside(const Settings& source, const Beam& beam, const Ban
   double inside = 0.0;
   for (const double fraction : fractions) inside += fraction;
   if (inside >= 1.0 - negligible) return;
-  std::ostringstream outside;
-  outside.precision(3);
-  outside << "a spectrum with " << 100.0 * (1.0 - inside) << " % of its power outside the bands";
-  throw source.error("", outside.str(), "[scene] bands_nm that hold all of it");
+  throw source.error(
+      "", printed("a spectrum with %.3g %% of its power outside the bands", 100.0 * (1.0 - inside)),
+      "[scene] bands_nm that hold all of it");
 }
 
 // Rejects sources that are too far away or too wide for tracing in single precision.
 void require_traceable(const Settings& source, const Beam& beam) {
   const double away_m = beam.lab_from_emitter.translation_m.stableNorm();
   if (!(away_m <= largest_distance_m)) {
-    std::ostringstream found;
-    found << "a lamp " << away_m << " m away";
-    throw source.error("", found.str(), "at most 1e12 m");
+    throw source.error("", printed("a lamp %g m away", away_m), "at most 1e12 m");
   }
   SampleBlock samples;
-  std::array<uint32_t*, sobol_dimensions> columns;
-  for (size_t d = 0; d < sobol_dimensions; ++d) columns[d] = samples.bits[d].data();
-  sobol_points({}, 0, columns);
+  sobol_points({}, 0, samples.columns());
   RayBlock rays;
   beam.emitter->emit(samples, rays);
   for (const auto& origins_m : rays.origin_m) {
     for (const float origin_m : origins_m) {
       if (std::abs(origin_m) <= largest_extent_m) continue;
-      std::ostringstream found;
-      found << "light that starts " << origin_m << " m from the lamp's middle";
-      throw source.error("", found.str(), "an opening of at most 1e9 m");
+      throw source.error(
+          "",
+          printed("light that starts %g m from the lamp's middle", static_cast<double>(origin_m)),
+          "an opening of at most 1e9 m");
     }
   }
 }

@@ -95,21 +95,8 @@ AttitudeGrid usual_torque_map() {
   return grid;
 }
 
-AttitudeGrid read_torque_map(const Settings& root, const Attitude& attitude) {
-  if (!root.has(torque_map_key::torque_map)) return usual_torque_map();
-  AttitudeGrid grid{{attitude.tilt_rad}, {attitude.heading_rad}};
-  const Settings table = root.get(torque_map_key::torque_map);
-  const auto read = [&](const NumbersKey& key, std::vector<double>& angles_rad) {
-    if (!table.has(key)) return;
-    angles_rad = table.get(key);
-    require_ascending(table, key, angles_rad);
-  };
-  read(torque_map_key::tilt, grid.tilt_rad);
-  read(torque_map_key::heading, grid.heading_rad);
-  return grid;
-}
-
-// An axis of directions: its array in degrees, or equal steps from −half to half.
+// An axis of directions: its array in degrees, or equal steps from −half to
+// half.
 std::vector<double> read_direction_axis(const Settings& table, const NumbersKey& array,
                                         const NumberKey& step) {
   const double half_rad = array.range.high;
@@ -137,16 +124,8 @@ std::vector<double> read_direction_axis(const Settings& table, const NumbersKey&
   return values;
 }
 
-std::optional<uint64_t> read_torque_map_rays(const Settings& root) {
-  if (!root.has(torque_map_key::torque_map)) return std::nullopt;
-  const Settings table = root.get(torque_map_key::torque_map);
-  if (!table.has(torque_map_key::rays)) return std::nullopt;
-  return static_cast<uint64_t>(table.get(torque_map_key::rays));
-}
-
-std::optional<Settings> read_molecular_flow(const Settings& root, bool over_directions) {
-  if (!root.has(torque_map_key::torque_map)) return std::nullopt;
-  const Settings table = root.get(torque_map_key::torque_map);
+std::optional<Settings> read_molecular_flow(const Settings& root, const Settings& table,
+                                            bool over_directions) {
   if (!table.has(torque_map_key::molecular_flow)) return std::nullopt;
   if (!over_directions) {
     throw table.error(torque_map_key::molecular_flow, "a gas flow without directions",
@@ -158,9 +137,7 @@ std::optional<Settings> read_molecular_flow(const Settings& root, bool over_dire
   return table.get(torque_map_key::molecular_flow);
 }
 
-std::optional<DirectionGrid> read_light_directions(const Settings& root) {
-  if (!root.has(torque_map_key::torque_map)) return std::nullopt;
-  const Settings table = root.get(torque_map_key::torque_map);
+std::optional<DirectionGrid> read_light_directions(const Settings& table) {
   using namespace torque_map_key;
   if (!table.has(azimuth) && !table.has(azimuth_step) && !table.has(elevation) &&
       !table.has(elevation_step)) {
@@ -176,7 +153,29 @@ std::optional<DirectionGrid> read_light_directions(const Settings& root) {
                        read_direction_axis(table, azimuth, azimuth_step)};
 }
 
-// Reports a misspelt file name before unknown keys for this type of file.
+void read_torque_map(const Settings& root, ExperimentFile& file) {
+  if (!root.has(torque_map_key::torque_map)) {
+    file.torque_map = usual_torque_map();
+    return;
+  }
+  file.torque_map = {{file.attitude.tilt_rad}, {file.attitude.heading_rad}};
+  const Settings table = root.get(torque_map_key::torque_map);
+  const auto read = [&](const NumbersKey& key, std::vector<double>& angles_rad) {
+    if (!table.has(key)) return;
+    angles_rad = table.get(key);
+    require_ascending(table, key, angles_rad);
+  };
+  read(torque_map_key::tilt, file.torque_map.tilt_rad);
+  read(torque_map_key::heading, file.torque_map.heading_rad);
+  file.light_directions = read_light_directions(table);
+  if (table.has(torque_map_key::rays)) {
+    file.torque_map_rays = static_cast<uint64_t>(table.get(torque_map_key::rays));
+  }
+  file.molecular_flow = read_molecular_flow(root, table, file.light_directions.has_value());
+}
+
+// Reports a misspelt file name before unknown keys for this type of
+// file.
 void require_model(const Settings& scene, const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
@@ -271,10 +270,7 @@ ExperimentFile read_experiment_text(const std::filesystem::path& path, const std
   file.attitude = read_attitude(settings);
   file.trace = read_trace_options(settings);
   file.effort = read_effort(settings);
-  file.torque_map = read_torque_map(settings, file.attitude);
-  file.light_directions = read_light_directions(settings);
-  file.torque_map_rays = read_torque_map_rays(settings);
-  file.molecular_flow = read_molecular_flow(settings, file.light_directions.has_value());
+  read_torque_map(settings, file);
   if (settings.has(camera_key::camera)) file.camera = settings.get(camera_key::camera);
   for (const char* key : tables_of_others) {
     if (settings.has(key)) settings.raw(key);

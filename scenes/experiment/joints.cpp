@@ -155,16 +155,16 @@ void turn_joints(Scene& scene, const std::vector<Joint>& joints,
     turn.rotate(Eigen::AngleAxisd(joint.angle_rad, joint.axis));
     turn.translate(-joint.point_m);
     for (const std::string& node : joint.nodes) {
+      const auto wrong = [&](const std::string& expected) {
+        const char* key = tables[j].has(joint_key::node) ? "node" : "nodes";
+        return tables[j].error(key, "\"" + node + "\"", expected);
+      };
       const std::vector<uint32_t> parts = scene.instances_of(node);
       if (parts.empty()) {
-        throw tables[j].error(tables[j].has(joint_key::node) ? "node" : "nodes", "\"" + node + "\"",
-                              "a node of the scene that holds a mesh: " + nodes_of(scene, node));
+        throw wrong("a node of the scene that holds a mesh: " + nodes_of(scene, node));
       }
       for (const uint32_t part : parts) {
-        if (!turned.insert(part).second) {
-          throw tables[j].error(tables[j].has(joint_key::node) ? "node" : "nodes",
-                                "\"" + node + "\"", "parts that no joint turns yet");
-        }
+        if (!turned.insert(part).second) throw wrong("parts that no joint turns yet");
         // Skipped, so that a joint at angle 0 changes no bit of the scene.
         if (joint.angle_rad == 0.0) continue;
         Instance& instance = scene.instances[part];

@@ -76,24 +76,32 @@ size_t end_of_string(std::string_view text, size_t begin) {
   return text.size();
 }
 
-// Throws InputError for keys with too many parts, before recursive functions process them.
-void require_shallow(std::string_view text, const std::string& name) {
-  size_t dots = 0;
+// Calls `use` with each character, string and comment of a text and its line.
+template <class Use>
+void for_each_token(std::string_view text, const Use& use) {
   int line = 1;
   for (size_t i = 0; i < text.size();) {
     const char c = text[i];
     size_t end = i + 1;
     if (c == '"' || c == '\'') end = end_of_string(text, i);
     if (c == '#') end = std::min(text.find('\n', i), text.size());
-    if (c == '.') ++dots;
-    if (std::string_view("=,[]{}\n").find(c) != std::string_view::npos) dots = 0;
+    const std::string_view token = text.substr(i, end - i);
+    use(token, line);
+    line += static_cast<int>(std::ranges::count(token, '\n'));
+    i = end;
+  }
+}
+
+// Throws InputError for keys with too many parts, before recursive functions process them.
+void require_shallow(std::string_view text, const std::string& name) {
+  size_t dots = 0;
+  for_each_token(text, [&](std::string_view token, int line) {
+    if (token == ".") ++dots;
+    if (std::string_view("=,[]{}\n").find(token[0]) != std::string_view::npos) dots = 0;
     if (dots >= max_key_parts) {
       throw InputError({name, line}, "", "a key of more than 16 parts", "at most 16");
     }
-    line += static_cast<int>(std::count(text.begin() + static_cast<ptrdiff_t>(i),
-                                        text.begin() + static_cast<ptrdiff_t>(end), '\n'));
-    i = end;
-  }
+  });
 }
 
 // A step of a key's path: a name, or an index if the name is empty.
@@ -262,27 +270,18 @@ SettingsNode parse_toml(const std::string& text, const std::string& name) {
 
 std::vector<TomlComment> toml_comments(const std::string& text) {
   std::vector<TomlComment> comments;
-  int line = 1, depth = 0;  // depth of open brackets
-  bool has_value = false;   // on this line so far
-  for (size_t i = 0; i < text.size();) {
-    const char c = text[i];
-    size_t end = i + 1;
+  int depth = 0;           // of open brackets
+  bool has_value = false;  // on this line so far
+  for_each_token(text, [&](std::string_view token, int line) {
+    const char c = token[0];
     if (c == '#') {
-      end = std::min(text.find('\n', i), text.size());
-      comments.push_back({line, std::string(trimmed(std::string_view(text).substr(i, end - i))),
-                          has_value || depth > 0});
-    } else if (c == '"' || c == '\'') {
-      end = end_of_string(text, i);
-    } else if (c == '\n') {
-      has_value = false;
+      comments.push_back({line, std::string(trimmed(token)), has_value || depth > 0});
     }
+    if (c == '\n') has_value = false;
     if (c == '[' || c == '{') ++depth;
     if (c == ']' || c == '}') --depth;
     has_value = has_value || std::string_view(" \t\r\n#").find(c) == std::string_view::npos;
-    line += static_cast<int>(std::count(text.begin() + static_cast<ptrdiff_t>(i),
-                                        text.begin() + static_cast<ptrdiff_t>(end), '\n'));
-    i = end;
-  }
+  });
   return comments;
 }
 

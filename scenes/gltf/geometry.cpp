@@ -78,11 +78,8 @@ class Vertices {
   bool are_single() const { return !rests_; }
 
   Vec3 position(uint32_t vertex) const {
-    Vec3 p(positions_.number(vertex, 0), positions_.number(vertex, 1),
-           positions_.number(vertex, 2));
-    if (rests_) {
-      p += Vec3(rests_->number(vertex, 0), rests_->number(vertex, 1), rests_->number(vertex, 2));
-    }
+    Vec3 p = positions_.vector3(vertex);
+    if (rests_) p += rests_->vector3(vertex);
     if (!p.allFinite()) {
       throw document_.wrong(pointer("accessors", accessor_),
                             "a position that is not finite at element " + std::to_string(vertex),

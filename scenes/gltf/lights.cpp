@@ -23,15 +23,14 @@ constexpr const char* profile_extension = "EXT_lights_ies";
 
 // The extension's object in `owner`; an empty object if there is none.
 json lights_object(const json& owner, const char* extension) {
-  const auto extensions = owner.find("extensions");
-  if (extensions == owner.end() || !extensions->is_object()) return json::object();
-  const auto found = extensions->find(extension);
-  return found != extensions->end() && found->is_object() ? *found : json::object();
+  const json* const extensions = gltf::member_of(owner, "extensions");
+  const json* const found = extensions ? gltf::member_of(*extensions, extension) : nullptr;
+  return found && found->is_object() ? *found : json::object();
 }
 
 std::string text_or(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+  const json* const found = gltf::member_of(object, key);
+  return found && found->is_string() ? found->get<std::string>() : "";
 }
 
 // An element of an extension's list of lights.
@@ -173,10 +172,8 @@ const GltfLight& light_named(const Settings& source, const std::vector<GltfLight
 std::vector<GltfLight> read_gltf_lights(const std::filesystem::path& path, double metres_per_unit,
                                         bool may_leave_folder) {
   constexpr uint64_t largest_bytes = 4ull << 30;
-  const GltfOpen open = [&](const std::string& relative_path) -> std::optional<std::string> {
-    return read_file_beside(path.parent_path(), relative_path, largest_bytes, may_leave_folder);
-  };
-  return read_gltf_lights_bytes(read_file(path, largest_bytes), path.string(), open,
+  return read_gltf_lights_bytes(read_file(path, largest_bytes), path.string(),
+                                files_beside(path.parent_path(), largest_bytes, may_leave_folder),
                                 metres_per_unit, largest_bytes);
 }
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <vector>
 
 #include "core/numerics/connected.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -111,15 +111,14 @@ MeshClosure closure_of(const Scene& scene) {
 
 std::string describe_closure(const MeshClosure& closure) {
   if (closure.t_junctions == 0 && closure.almost_closed == 0) return "";
-  std::ostringstream line;
-  line << closure.closed << " of " << closure.meshes << " meshes are closed; the others have "
-       << closure.open_edges << " open edges, " << closure.t_junctions
-       << " of them with a vertex on them (T-junctions)";
-  if (closure.almost_closed > 0) {
-    line << "; " << closure.almost_closed << " mesh(es) are closed but for a few edges";
-  }
-  line << ": light may leak there";
-  return line.str();
+  return printed(
+             "%zu of %zu meshes are closed; the others have %zu open edges, %zu of them with a "
+             "vertex on them (T-junctions)",
+             closure.closed, closure.meshes, closure.open_edges, closure.t_junctions) +
+         (closure.almost_closed > 0
+              ? printed("; %zu mesh(es) are closed but for a few edges", closure.almost_closed)
+              : "") +
+         ": light may leak there";
 }
 
 }  // namespace photorque

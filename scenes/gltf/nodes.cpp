@@ -151,17 +151,14 @@ std::optional<AccessorReader> attribute(const Document& document, const nlohmann
   return AccessorReader(document, index, budget);
 }
 
-Vec3 vector(const AccessorReader& reader, size_t i) {
-  return {reader.number(i, 0), reader.number(i, 1), reader.number(i, 2)};
-}
-
 }  // namespace
 
 std::vector<Affine> gpu_instances(const Document& document, int node, MemoryBudget* budget) {
   const nlohmann::json& json = document.json["nodes"][static_cast<size_t>(node)];
-  const auto extensions = json.find("extensions");
-  if (extensions == json.end() || !extensions->contains(extension)) return {Affine::Identity()};
-  const nlohmann::json& attributes = (*extensions)[extension]["attributes"];
+  const nlohmann::json* const extensions = member_of(json, "extensions");
+  const nlohmann::json* const found = extensions ? member_of(*extensions, extension) : nullptr;
+  if (!found) return {Affine::Identity()};
+  const nlohmann::json& attributes = (*found)["attributes"];
   const std::string where = pointer("nodes", node, "extensions", extension, "attributes");
 
   const auto translation = attribute(document, attributes, "TRANSLATION", where, budget);
@@ -181,15 +178,15 @@ std::vector<Affine> gpu_instances(const Document& document, int node, MemoryBudg
   budget->charge(*count, sizeof(Affine), where);
   std::vector<Affine> instances(*count, Affine::Identity());
   for (size_t i = 0; i < *count; ++i) {
-    if (translation) instances[i].translate(vector(*translation, i));
+    if (translation) instances[i].translate(translation->vector3(i));
     bool is_valid = true;
     if (rotation) {
-      const Vec3 imaginary = vector(*rotation, i);
+      const Vec3 imaginary = rotation->vector3(i);
       const Quat turn(rotation->number(i, 3), imaginary[0], imaginary[1], imaginary[2]);
       is_valid = is_unit(turn);
       instances[i].rotate(turn.normalized());
     }
-    if (scale) instances[i].scale(vector(*scale, i));
+    if (scale) instances[i].scale(scale->vector3(i));
     if (!is_valid || !is_invertible(instances[i])) {
       throw document.wrong(where, "instance " + std::to_string(i) + ", singular or not finite",
                            "invertible transforms with unit quaternions");

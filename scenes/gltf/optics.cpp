@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <set>
-#include <sstream>
 
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/glass.h"
 #include "scenes/gltf/file/fault.h"
@@ -14,11 +14,6 @@ namespace photorque::gltf {
 namespace {
 
 using nlohmann::json;
-
-// Rec. 709 luminance of linear RGB.
-double luminance(const std::vector<double>& rgb) {
-  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
-}
 
 // Grey fractions of a surface, before its coverage is applied.
 struct Grey {
@@ -97,14 +92,12 @@ std::optional<OpticalSurface> derived_glass(const json& material, int bands,
 std::optional<Settings> extras_of(const Document& document, int index) {
   if (index < 0) return std::nullopt;
   const json& material = document.json["materials"][static_cast<size_t>(index)];
-  const auto extras = material.find("extras");
-  if (extras == material.end() || !extras->is_object() || !extras->contains("photorque")) {
-    return std::nullopt;
-  }
-  const json& table = (*extras)["photorque"];
+  const json* const extras = member_of(material, "extras");
+  const json* const table = extras ? member_of(*extras, "photorque") : nullptr;
+  if (!table) return std::nullopt;
   const std::string where = pointer("materials", index, "extras", "photorque");
-  if (!table.is_object()) throw document.wrong(where, describe_json(table), "an object");
-  return Settings(settings_from_json(table, {document.file}), where);
+  if (!table->is_object()) throw document.wrong(where, describe_json(*table), "an object");
+  return Settings(settings_from_json(*table, {document.file}), where);
 }
 
 }  // namespace
@@ -240,17 +233,15 @@ bool has_ignored_texture(const json& material) {
 }
 
 std::string describe_surface(const OpticalSurface& surface) {
-  std::ostringstream text;
-  text.precision(3);
   const auto fraction = [](double value) { return std::abs(value) < 1e-12 ? 0.0 : value; };
-  text << "absorptance " << fraction(surface.absorbed[0]) << ", specular "
-       << fraction(surface.specular[0]) << ", diffuse " << fraction(surface.diffuse[0])
-       << ", transmittance " << fraction(surface.transmitted[0]);
+  std::string text = printed("absorptance %.3g, specular %.3g, diffuse %.3g, transmittance %.3g",
+                             fraction(surface.absorbed[0]), fraction(surface.specular[0]),
+                             fraction(surface.diffuse[0]), fraction(surface.transmitted[0]));
   if (surface.bsdf) {
-    if (surface.bsdf->law) text << " at normal incidence";
-    if (!surface.bsdf->description.empty()) text << "; " << surface.bsdf->description;
+    if (surface.bsdf->law) text += " at normal incidence";
+    if (!surface.bsdf->description.empty()) text += "; " + surface.bsdf->description;
   }
-  return text.str();
+  return text;
 }
 
 }  // namespace photorque::gltf

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/settings/settings.h"
@@ -12,6 +13,11 @@
 #include "scenes/surfaces/settings.h"
 
 namespace photorque::gltf {
+
+// Rec. 709 luminance of linear red, green and blue.
+inline double luminance(std::span<const double> rgb) {
+  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+}
 
 struct MaterialOptics {
   SheetOptics sheet;

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 #include <tuple>
 
 #include "core/constants.h"
 #include "core/files.h"
 #include "core/provenance.h"
+#include "core/text/format.h"
 #include "scenes/gltf/coincident.h"
 #include "scenes/gltf/geometry.h"
 #include "scenes/gltf/mesh_closure.h"
@@ -142,12 +142,11 @@ class Assembly {
     }
     const double tilt_rad = std::sqrt(squares / area);
     if (!(tilt_rad > noticeable_rad)) return;
-    std::ostringstream line;
-    line.precision(2);
-    line << pointer("meshes", index) << ": corners up to " << farthest
-         << " from the mesh's origin have single precision, which turns the facets by about "
-         << 1e3 * tilt_rad << " mrad (rms): move the origin to the mesh and place its node";
-    add_notice(line.str());
+    add_notice(pointer("meshes", index) +
+               printed(": corners up to %.2g from the mesh's origin have single precision, which "
+                       "turns the facets by about %.2g mrad (rms): move the origin to the mesh and "
+                       "place its node",
+                       farthest, 1e3 * tilt_rad));
   }
 
   void add_instance(const Placement& placement, uint32_t mesh, int material) {
@@ -157,9 +156,8 @@ class Assembly {
     const double reach_m = instance.body_from_mesh.linear().norm() * radii_[mesh] +
                            instance.body_from_mesh.translation().norm();
     if (!(reach_m <= largest_extent_m)) {
-      std::ostringstream found;
-      found << "a mesh up to " << reach_m << " m away";
-      throw document_.wrong(pointer("nodes", placement.node), found.str(), "at most 1e9 m");
+      throw document_.wrong(pointer("nodes", placement.node),
+                            printed("a mesh up to %g m away", reach_m), "at most 1e9 m");
     }
     budget_->charge(1, sizeof(Instance) + placement.path.size(), pointer("nodes", placement.node));
     const GltfMaterial& optics = material_of(material);
@@ -189,13 +187,12 @@ class Assembly {
       smallest = &instance;
     }
     if (smallest == nullptr || least_m >= too_small * all.diagonal().norm()) return;
-    std::ostringstream found;
-    found.precision(3);
-    found << "\"" << smallest->path << "\", " << least_m << " m long in a scene of "
-          << all.diagonal().norm() << " m";
-    throw document_.wrong("", found.str(),
-                          "parts of at least 1e-6 of the scene, which rays resolve to 6e-8 (leave "
-                          "out what is far away)");
+    throw document_.wrong(
+        "",
+        "\"" + smallest->path + "\"" +
+            printed(", %.3g m long in a scene of %.3g m", least_m, all.diagonal().norm()),
+        "parts of at least 1e-6 of the scene, which rays resolve to 6e-8 (leave "
+        "out what is far away)");
   }
 
   // Replaces every instance with a coloured picture by one instance per luminance step of the
@@ -265,11 +262,9 @@ class Assembly {
       model_.scene.meshes.push_back(std::move(step.mesh));
       parts.push_back(std::move(part));
     }
-    std::ostringstream line;
-    line.precision(3);
-    line << in_quotes(whole.material) << ": absorptance " << darkest << " to " << brightest
-         << " from the picture of its base colour";
-    add_notice(line.str());
+    add_notice(in_quotes(whole.material) +
+               printed(": absorptance %.3g to %.3g from the picture of its base colour", darkest,
+                       brightest));
     return parts;
   }
 
@@ -335,11 +330,10 @@ class Assembly {
     count(without_triangles_, "primitive(s) without triangles (points, lines) left out");
     const double radius_m = model_.scene.radius_m();
     if (radius_m > surprising_radius_m) {
-      std::ostringstream line;
-      line.precision(3);
-      line << "the scene reaches " << radius_m
-           << " m from the body's origin; CAD exports often count millimetres";
-      model_.notices.push_back(line.str());
+      model_.notices.push_back(
+          printed("the scene reaches %.3g m from the body's origin; CAD exports often count "
+                  "millimetres",
+                  radius_m));
     }
     const std::string leaks = describe_closure(closure);
     if (!leaks.empty()) model_.notices.push_back(leaks);
@@ -370,6 +364,13 @@ class Assembly {
 
 }  // namespace
 
+GltfOpen files_beside(const std::filesystem::path& folder, uint64_t largest_bytes,
+                      bool may_leave_folder) {
+  return [=](const std::string& relative_path) {
+    return read_file_beside(folder, relative_path, largest_bytes, may_leave_folder);
+  };
+}
+
 GltfModel read_gltf_bytes(const std::string& bytes, const std::string& name, const GltfOpen& open,
                           const GltfOptions& options) {
   MemoryBudget budget(name, options.largest_bytes);
@@ -387,10 +388,8 @@ GltfModel read_gltf_bytes(const std::string& bytes, const std::string& name, con
 
 GltfModel read_gltf(const std::filesystem::path& path, const GltfOptions& options) {
   const std::string bytes = read_file(path, options.largest_bytes);
-  const GltfOpen open = [&](const std::string& relative_path) -> std::optional<std::string> {
-    return read_file_beside(path.parent_path(), relative_path, options.largest_bytes,
-                            options.may_leave_folder);
-  };
+  const GltfOpen open =
+      files_beside(path.parent_path(), options.largest_bytes, options.may_leave_folder);
   GltfModel model = read_gltf_bytes(bytes, path.string(), open, options);
   model.inputs.front().first = path.filename().string();
   return model;

@@ -81,6 +81,10 @@ struct GltfModel {
   std::vector<std::pair<std::string, std::string>> inputs;  // file name, content hash: Provenance
 };
 
+// Opens the files in the folder of a model; see read_file_beside().
+GltfOpen files_beside(const std::filesystem::path& folder, uint64_t largest_bytes,
+                      bool may_leave_folder);
+
 // Throws InputError (file, JSON pointer of the value, found, expected) if the file or an external
 // buffer is missing, malformed in a way that could affect geometry, or beyond the options' limits.
 // Positions are exactly those of the file; transforms are in double precision.

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "scenes/gltf/file/fault.h"
+#include "scenes/gltf/optics.h"
 
 namespace photorque::gltf {
 namespace {
@@ -111,8 +112,7 @@ std::vector<TextureStep> texture_steps(const Mesh& mesh, const BaseColours& pict
     const auto& corners = mesh.triangles[t];
     const Colour colour =
         mean_over(picture, {mesh.uv[corners[0]], mesh.uv[corners[1]], mesh.uv[corners[2]]});
-    const double luminance = 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2];
-    auto& [triangles, colours] = steps[static_cast<int>(luminance * luminance_steps)];
+    auto& [triangles, colours] = steps[static_cast<int>(luminance(colour) * luminance_steps)];
     triangles.push_back(t);
     colours.push_back(colour);
   }

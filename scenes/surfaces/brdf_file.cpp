@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -136,19 +136,18 @@ std::optional<std::string> coverage_notice(const BrdfTable& table) {
   const double incidence_rad = table.incidence_rad.back(), scatter_rad = table.scatter_rad.back();
   const bool is_constant = table.brdf_1_sr.size() == 1;
   if (is_constant || std::min(incidence_rad, scatter_rad) >= wide_rad) return std::nullopt;
-  std::ostringstream words;
-  words.precision(3);
-  words << "measured up to an incidence of " << incidence_rad / degree_rad
-        << " deg and a scatter of " << scatter_rad / degree_rad
-        << " deg; to 90 deg the last values go on";
+  std::string words = printed(
+      "measured up to an incidence of %.3g deg and a scatter of %.3g deg; to 90 deg the last "
+      "values go on",
+      incidence_rad / degree_rad, scatter_rad / degree_rad);
   // Detects tables in radians: they have no angle above π/2.
   constexpr double right_angle = pi / 2.0 + 1e-2;
   const double widest = std::max(incidence_rad, scatter_rad) / degree_rad;
   const double azimuth = table.azimuth_rad.back() / degree_rad;
   if (widest > 0.0 && widest <= right_angle && azimuth <= pi + 1e-2) {
-    words << " (are its angles in radians?)";
+    words += " (are its angles in radians?)";
   }
-  return words.str();
+  return words;
 }
 
 }  // namespace photorque

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "core/constants.h"
 #include "core/text/format.h"
@@ -117,23 +116,8 @@ bool any(const BandValues& values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
 }
 
-std::string sum_text(double sum, size_t band) {
-  std::ostringstream text;
-  text.precision(12);
-  text << "fractions that sum to " << sum << " in band " << band;
-  return text.str();
-}
-
 std::string list(const std::vector<const Fraction*>& some) {
   return joined_text(some, ", ", [](const Fraction* fraction) { return fraction->key.name; });
-}
-
-// "roughness 0.3", for notices.
-std::string words(const char* what, double number) {
-  std::ostringstream text;
-  text.precision(3);
-  text << what << " " << number;
-  return text.str();
 }
 
 // Glass in front of `base`, whose fractions have been read.
@@ -168,7 +152,7 @@ void read_slope_error(const Settings& table, Bsdf& bsdf) {
                         "two sizes: slope_error_mrad = [along it, across it]");
     }
     bsdf.specular = photorque::slope_error(slope_rad, shape);
-    bsdf.description = words("slope error in mrad", 1e3 * slope_rad);
+    bsdf.description = printed("slope error in mrad %.3g", 1e3 * slope_rad);
     return;
   }
   const std::vector<double> slopes_rad = table.numbers(key, key.range);
@@ -186,7 +170,7 @@ void read_slope_error(const Settings& table, Bsdf& bsdf) {
   bsdf.axis.stableNormalize();
   bsdf.specular = photorque::slope_error(slopes_rad[0], slopes_rad[1], shape);
   bsdf.description =
-      words("slope error in mrad", 1e3 * slopes_rad[0]) + words(" and", 1e3 * slopes_rad[1]);
+      printed("slope error in mrad %.3g and %.3g", 1e3 * slopes_rad[0], 1e3 * slopes_rad[1]);
 }
 
 // Reads the lobe of the specular fraction, unless it is that of a mirror.
@@ -202,7 +186,7 @@ void read_lobe(const Settings& table, const OpticalSurface& surface, Bsdf& bsdf)
     }
     const double alpha = read_alpha(table);
     bsdf.specular = rough_mirror(alpha);
-    bsdf.description = words("roughness", std::sqrt(alpha));
+    bsdf.description = printed("roughness %.3g", std::sqrt(alpha));
   } else if (table.has(surface_key::slope_error)) {
     read_slope_error(table, bsdf);
   }
@@ -222,7 +206,8 @@ void read_heat(const Settings& table, SheetOptics& sheet) {
     Bsdf bsdf = surface.bsdf ? *surface.bsdf : Bsdf{};
     bsdf.reemitted = reemitted;
     bsdf.front_emission = front / (front + back);
-    bsdf.description += (bsdf.description.empty() ? "" : ", ") + words("reemitted", reemitted);
+    bsdf.description +=
+        (bsdf.description.empty() ? "" : ", ") + printed("reemitted %.3g", reemitted);
     surface.bsdf = std::make_shared<const Bsdf>(std::move(bsdf));
   };
   heat(sheet.front);
@@ -244,24 +229,21 @@ OpticalSurface read_measured(const Settings& table, int bands, const std::string
                       "an existing file, relative to the folder of the experiment");
   BandValues scale{};
   std::fill_n(scale.begin(), bands, 1.0);
-  if (table.has(brdf_scale)) {
-    scale = read_band_values(table, brdf_scale, bands);
-  }
+  if (table.has(brdf_scale)) scale = read_band_values(table, brdf_scale, bands);
   const BrdfTable scattering = read_brdf(*text, file);
   if (const auto notice = coverage_notice(scattering)) notices.push_back(file + ": " + *notice);
   MeasuredSurface measured = measured_surface(name, scattering, scale);
-  std::ostringstream words;
-  words.precision(4);
   if (measured.largest_reflectance > 1.0 + sum_tolerance) {
-    words << "a reflectance of " << measured.largest_reflectance << " at "
-          << measured.at_incidence_rad / degree_rad << " deg";
-    throw table.error(brdf_file, words.str(), "at most 1 at every angle, or a brdf_scale");
+    throw table.error(brdf_file,
+                      printed("a reflectance of %.4g at %.4g deg", measured.largest_reflectance,
+                              measured.at_incidence_rad / degree_rad),
+                      "at most 1 at every angle, or a brdf_scale");
   }
   constexpr double worth_telling = 0.01;
   if (measured.asymmetry > worth_telling) {
-    words << file << ": f(i, o) and f(o, i) differ by " << 100.0 * measured.asymmetry
-          << " % (root mean square), against reciprocity; the mean is taken";
-    notices.push_back(words.str());
+    notices.push_back(file + printed(": f(i, o) and f(o, i) differ by %.4g %% (root mean square), "
+                                     "against reciprocity; the mean is taken",
+                                     100.0 * measured.asymmetry));
   }
   return std::move(measured.surface);
 }
@@ -292,7 +274,7 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name) 
       (surface.*missing[0]->values)[band] = 1.0 - sum;
       sum = 1.0;
     } else if (!is_one) {
-      throw table.error("", sum_text(sum, band),
+      throw table.error("", printed("fractions that sum to %.12g in band %zu", sum, band),
                         missing.empty() || sum > 1.0
                             ? "a sum of 1"
                             : "a sum of 1, or all but one of " + list(missing) + " too");
@@ -303,8 +285,8 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name) 
   if (table.has(surface_key::refractive_index)) return read_glass(table, surface);
   read_lobe(table, surface, bsdf);
   if (any(bsdf.retroreflected)) {
-    bsdf.description +=
-        (bsdf.description.empty() ? "" : ", ") + words("retroreflectance", bsdf.retroreflected[0]);
+    bsdf.description += (bsdf.description.empty() ? "" : ", ") +
+                        printed("retroreflectance %.3g", bsdf.retroreflected[0]);
   }
   if (!bsdf.description.empty()) {
     surface.bsdf = std::make_shared<const Bsdf>(std::move(bsdf));

@@ -18,7 +18,7 @@ struct SourceContext {
   double scene_radius_m = 1.0;  // of the sphere about the lab origin that contains the scene
   // Receives notices of legal but implausible values (such as a beam that optics cannot produce).
   // May be empty.
-  std::function<void(const std::string&)> notice;
+  std::function<void(const std::string&)> notice = {};
   // Folder of the experiment; relative paths of files that a source names start here.
   std::filesystem::path folder = {};
   // Receives name and content hash of every file read, for the provenance. May be empty.

@@ -232,11 +232,7 @@ class Spread {
     }
     if (aim_rad_ > 0.0) {
       const Vec3 turn_rad(aim_rad_ * normal(led, 1), aim_rad_ * normal(led, 2), 0.0);
-      const double angle_rad = turn_rad.norm();
-      beam.lab_from_emitter.rotation =
-          beam.lab_from_emitter.rotation *
-          Quat(Eigen::AngleAxisd(
-              angle_rad, angle_rad > 0.0 ? Vec3(turn_rad / angle_rad) : Vec3(Vec3::UnitX())));
+      beam.lab_from_emitter.rotation = beam.lab_from_emitter.rotation * turn_by(turn_rad);
     }
   }
 

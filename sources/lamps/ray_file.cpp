@@ -78,13 +78,7 @@ RayLamp::RayLamp(double power_W, const RaySet& set) : power_W_(power_W) {
                         {d.x(), d.y(), d.z()}});
     before += ray.flux;
   }
-  first_entry_.resize(entries_.size());
-  uint32_t entry = 0;
-  for (size_t k = 0; k < first_entry_.size(); ++k) {
-    const double fraction = static_cast<double>(k) / static_cast<double>(first_entry_.size());
-    while (entry + 1 < entries_.size() && entries_[entry + 1].before <= fraction) ++entry;
-    first_entry_[k] = entry;
-  }
+  index_.build(entries_, entries_.size());
   tabulate_intensity(set);
 }
 
@@ -128,21 +122,17 @@ void RayLamp::tabulate_intensity(const RaySet& set) {
 
 void RayLamp::emit(const SampleBlock& samples, RayBlock& rays) const {
   for (int i = 0; i < ray_block; ++i) {
-    const double fraction = fraction_of(samples.bits[2][i]);
-    size_t k =
-        first_entry_[static_cast<size_t>(fraction * static_cast<double>(first_entry_.size()))];
-    while (k + 1 < entries_.size() && entries_[k + 1].before <= fraction) ++k;
+    const Entry& entry = index_.find(entries_, fraction_of(samples.bits[2][i]));
     for (size_t axis = 0; axis < 3; ++axis) {
-      rays.origin_m[axis][i] = entries_[k].origin_m[axis];
-      rays.direction[axis][i] = entries_[k].direction[axis];
+      rays.origin_m[axis][i] = entry.origin_m[axis];
+      rays.direction[axis][i] = entry.direction[axis];
     }
   }
 }
 
 double RayLamp::relative_intensity(double angle_rad) const {
   if (edge_rise_.empty()) return angle_rad == 0.0 ? 1.0 : 0.0;
-  const double sine = std::sin(0.5 * angle_rad);
-  const auto edge = std::lower_bound(edge_rise_.begin(), edge_rise_.end(), 2.0 * sine * sine);
+  const auto edge = std::lower_bound(edge_rise_.begin(), edge_rise_.end(), rise_at(angle_rad));
   if (edge == edge_rise_.end()) return 0.0;
   return step_[static_cast<size_t>(edge - edge_rise_.begin())];
 }

@@ -7,6 +7,7 @@
 
 #include "raytrace/emitter.h"
 #include "sources/photometry/ray_set.h"
+#include "sources/profiles/sampling.h"
 
 namespace photorque {
 
@@ -36,7 +37,7 @@ class RayLamp : public Emitter {
 
   double power_W_;
   std::vector<Entry> entries_;
-  std::vector<uint32_t> first_entry_;  // lookup table for equally spaced fractions
+  FractionIndex index_;  // of the entries
   // Steps of the intensity: their outer edges in 1 − cos θ, rising, and their values relative to
   // the largest.
   std::vector<double> edge_rise_, step_;

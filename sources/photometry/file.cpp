@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
-#include <sstream>
 
 #include "core/constants.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -31,9 +32,8 @@ void require_few_turns(const std::vector<double>& azimuth_deg, const InputLocati
   constexpr double most_deg = 720.0;
   for (const double angle_deg : azimuth_deg) {
     if (std::abs(angle_deg) <= most_deg) continue;
-    std::ostringstream found;
-    found << angle_deg;
-    throw InputError(where, "horizontal angles", found.str(), "angles from -720 to 720 degrees");
+    throw InputError(where, "horizontal angles", printed("%g", angle_deg),
+                     "angles from -720 to 720 degrees");
   }
 }
 
@@ -82,9 +82,9 @@ IntensityTable unfold(const StoredPlanes& stored, PlaneSymmetry symmetry,
   double before_deg = plane_at.rbegin()->first - 360.0;
   for (const auto& [azimuth_deg, plane] : plane_at) {
     if (azimuth_deg - before_deg > 180.0 + 1e-6) {
-      std::ostringstream gap;
-      gap << "no plane between " << before_deg << " and " << azimuth_deg << " degrees";
-      throw InputError(where, "horizontal angles", gap.str(), "planes all the way round");
+      throw InputError(where, "horizontal angles",
+                       printed("no plane between %g and %g degrees", before_deg, azimuth_deg),
+                       "planes all the way round");
     }
     before_deg = azimuth_deg;
     table.azimuth_rad.push_back(azimuth_deg * degree_rad);
@@ -127,27 +127,23 @@ IntensityTable sideways_table(Pole pole, const StoredPlanes& stored, const Input
 
 void require_goniometer_range(const std::vector<double>& polar_deg, const InputLocation& where) {
   if (polar_deg.front() >= 0.0 && polar_deg.back() <= 180.0) return;
-  std::ostringstream found;
-  found << polar_deg.front() << " to " << polar_deg.back();
-  throw InputError(where, "vertical angles", found.str(), "angles from 0 to 180 degrees");
+  throw InputError(where, "vertical angles",
+                   printed("%g to %g", polar_deg.front(), polar_deg.back()),
+                   "angles from 0 to 180 degrees");
 }
 
 void require_ascending(const std::vector<double>& angles_deg, const std::string& key,
                        const InputLocation& where) {
-  for (size_t i = 1; i < angles_deg.size(); ++i) {
-    if (angles_deg[i] > angles_deg[i - 1]) continue;
-    std::ostringstream found;
-    found << angles_deg[i] << " after " << angles_deg[i - 1];
-    throw InputError(where, key, found.str(), "angles in rising order");
-  }
+  const auto falls = std::ranges::adjacent_find(angles_deg, std::greater_equal());
+  if (falls == angles_deg.end()) return;
+  throw InputError(where, key, printed("%g after %g", *(falls + 1), *falls),
+                   "angles in rising order");
 }
 
 void require_opening(const Opening& opening, const InputLocation& where) {
   for (const double side_m : {opening.x_m, opening.y_m}) {
     if (side_m <= largest_extent_m) continue;
-    std::ostringstream found;
-    found << side_m << " m";
-    throw InputError(where, "luminous opening", found.str(), "at most 1e9 m");
+    throw InputError(where, "luminous opening", printed("%g m", side_m), "at most 1e9 m");
   }
 }
 
@@ -165,11 +161,10 @@ void note_gaps(PhotometricFile& file) {
   const double usual_rad = sorted[(sorted.size() - 1) / 2];
   for (size_t j = 0; j < at_rad.size(); ++j) {
     if (gaps_rad[j] < wide_rad + 1e-9 || gaps_rad[j] < usual_gaps * usual_rad) continue;
-    std::ostringstream line;
-    line << "no plane between " << at_rad[j] / degree_rad << " and "
-         << (at_rad[j] + gaps_rad[j]) / degree_rad
-         << " degrees: intensities there lie on straight lines between these two";
-    file.notices.push_back(line.str());
+    file.notices.push_back(printed(
+        "no plane between %g and %g degrees: intensities there lie on straight lines between these "
+        "two",
+        at_rad[j] / degree_rad, (at_rad[j] + gaps_rad[j]) / degree_rad));
   }
 }
 
@@ -189,14 +184,11 @@ void require_light(PhotometricFile& file, const InputLocation& where) {
     throw InputError(where, "intensities", "none above zero", "a source that shines");
   }
   if (!(largest >= faintest_cd && largest <= brightest_cd)) {
-    std::ostringstream found;
-    found << largest << " as the largest";
-    throw InputError(where, "intensities", found.str(), "1e-60 to 1e60");
+    throw InputError(where, "intensities", printed("%g as the largest", largest), "1e-60 to 1e60");
   }
   if (negative > 0) {
-    std::ostringstream line;
-    line << negative << " negative intensities, down to " << least << ", count as zero";
-    file.notices.push_back(line.str());
+    file.notices.push_back(
+        printed("%zu negative intensities, down to %g, count as zero", negative, least));
   }
 }
 

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "core/constants.h"
 #include "core/numerics/quadrature.h"
 #include "core/numerics/root.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -124,17 +124,16 @@ BeamShape describe(const Emitter& emitter) {
 
 std::string one_line(const std::string& name, const BeamShape& shape) {
   if (shape.collimated) return name + ": collimated, all of the flux along the axis";
-  char text[320];
   const double half_fwhm_deg = 0.5 * shape.fwhm_rad / degree_rad;
-  std::snprintf(text, sizeof text,
-                ": FWHM %.4g deg, full width at tenth maximum %.4g deg; half-angle of 50 %% of the "
-                "flux %.4g deg, 86.5 %% %.4g deg, 90 %% %.4g deg; within ±%.4g deg %.2f %%, within "
-                "±%.4g deg %.2f %%",
-                shape.fwhm_rad / degree_rad, shape.full_width_tenth_rad / degree_rad,
-                shape.half_angle_50_rad / degree_rad, shape.half_angle_86_rad / degree_rad,
-                shape.half_angle_90_rad / degree_rad, half_fwhm_deg, 100.0 * shape.within_half_fwhm,
-                2.0 * half_fwhm_deg, 100.0 * shape.within_fwhm);
-  return name + text;
+  return name +
+         printed(
+             ": FWHM %.4g deg, full width at tenth maximum %.4g deg; half-angle of 50 %% of the "
+             "flux %.4g deg, 86.5 %% %.4g deg, 90 %% %.4g deg; within ±%.4g deg %.2f %%, within "
+             "±%.4g deg %.2f %%",
+             shape.fwhm_rad / degree_rad, shape.full_width_tenth_rad / degree_rad,
+             shape.half_angle_50_rad / degree_rad, shape.half_angle_86_rad / degree_rad,
+             shape.half_angle_90_rad / degree_rad, half_fwhm_deg, 100.0 * shape.within_half_fwhm,
+             2.0 * half_fwhm_deg, 100.0 * shape.within_fwhm);
 }
 
 namespace {

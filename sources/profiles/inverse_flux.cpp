@@ -8,6 +8,7 @@
 #include "core/errors.h"
 #include "core/numerics/interpolation.h"
 #include "core/numerics/quadrature.h"
+#include "sources/profiles/sampling.h"
 
 namespace photorque {
 namespace {
@@ -20,8 +21,7 @@ constexpr double allowed_error = 1e-6;
 class FluxOutside {
  public:
   explicit FluxOutside(const AngularProfile& profile) : profile_(profile) {
-    const double sine = std::sin(0.5 * profile.end_rad);
-    width_ = 2.0 * sine * sine / panels;
+    width_ = rise_at(profile.end_rad) / panels;
     outside_.assign(panels + 1, 0.0);
     for (size_t j = panels; j-- > 0;) {
       outside_[j] = outside_[j + 1] + integral(edge(j), edge(j + 1));

@@ -66,7 +66,7 @@ PlaneSampler::PlaneSampler(const std::vector<double>& polar_rad, const double* i
   for (size_t i = 0; i < curves.size(); ++i) {
     add(curves[i], polar_rad[i], polar_rad[i + 1], flux_, deepest_cell);
   }
-  index_cells();
+  find_fractions();
 }
 
 PlaneSampler::PlaneSampler(const std::vector<RadialPiece>& pieces) {
@@ -78,12 +78,12 @@ PlaneSampler::PlaneSampler(const std::vector<RadialPiece>& pieces) {
     add(piece.intensity, piece.from_rad, piece.to_rad, rough, deepest_cell);
   }
   for (const Cell& cell : cells_) flux_ += cell.before;
-  if (flux_ > 0.0) index_cells();
+  if (flux_ > 0.0) find_fractions();
 }
 
 // Converts the `before` of each cell from its flux (see add()) to the fraction of the flux below
 // it, and builds the lookup table.
-void PlaneSampler::index_cells() {
+void PlaneSampler::find_fractions() {
   double before = 0.0;
   for (Cell& cell : cells_) {
     const double fraction = cell.before / flux_;
@@ -93,13 +93,7 @@ void PlaneSampler::index_cells() {
     cell.high *= scale;
     before += fraction;
   }
-  first_cell_.resize(2 * cells_.size());
-  uint32_t cell = 0;
-  for (size_t k = 0; k < first_cell_.size(); ++k) {
-    const double fraction = static_cast<double>(k) / static_cast<double>(first_cell_.size());
-    while (cell + 1 < cells_.size() && cells_[cell + 1].before <= fraction) ++cell;
-    first_cell_[k] = cell;
-  }
+  index_.build(cells_, 2 * cells_.size());
 }
 
 // Appends cells for an interval. Cell::before temporarily stores the cell's flux.
@@ -129,9 +123,7 @@ void PlaneSampler::add(const Intensity& curve, double low_rad, double high_rad, 
 }
 
 double PlaneSampler::rise(double fraction) const {
-  size_t k = first_cell_[static_cast<size_t>(fraction * static_cast<double>(first_cell_.size()))];
-  while (k + 1 < cells_.size() && cells_[k + 1].before <= fraction) ++k;
-  const Cell& cell = cells_[k];
+  const Cell& cell = index_.find(cells_, fraction);
   // Solves fraction − before = width (low t + (high − low) t²/2) in the form without cancellation.
   const double a = std::max(0.0, (fraction - cell.before) / cell.width);
   const double root =

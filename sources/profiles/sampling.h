@@ -39,6 +39,32 @@ inline double rise_at(double polar_rad) {
   return 2.0 * sine * sine;
 }
 
+// Finds the item of a cumulative distribution: `before`, the fraction in the items before it, rises
+// from item to item. A lookup table for equally spaced fractions shortens the search.
+class FractionIndex {
+ public:
+  template <typename Item>
+  void build(const std::vector<Item>& items, size_t slots) {
+    first_.resize(slots);
+    uint32_t item = 0;
+    for (size_t k = 0; k < slots; ++k) {
+      const double fraction = static_cast<double>(k) / static_cast<double>(slots);
+      while (item + 1 < items.size() && items[item + 1].before <= fraction) ++item;
+      first_[k] = item;
+    }
+  }
+  // The item that contains a fraction ∈ (0, 1).
+  template <typename Item>
+  const Item& find(const std::vector<Item>& items, double fraction) const {
+    size_t k = first_[static_cast<size_t>(fraction * static_cast<double>(first_.size()))];
+    while (k + 1 < items.size() && items[k + 1].before <= fraction) ++k;
+    return items[k];
+  }
+
+ private:
+  std::vector<uint32_t> first_;
+};
+
 // Intensity between two polar angles of a plane: ≥ 0 and smooth, including both ends.
 struct RadialPiece {
   double from_rad, to_rad;
@@ -71,11 +97,11 @@ class PlaneSampler {
   template <typename Intensity>
   void add(const Intensity& intensity, double low_rad, double high_rad, double plane_flux,
            int depth);
-  void index_cells();
+  void find_fractions();
 
   double flux_ = 0.0;
   std::vector<Cell> cells_;
-  std::vector<uint32_t> first_cell_;  // lookup table for equally spaced fractions
+  FractionIndex index_;  // of the cells
 };
 
 }  // namespace photorque

@@ -215,9 +215,8 @@ Vec3 force_of(Scene scene, const Vec3& light) {
   const Beam beam = fixtures::beam(emitter, -5 * size * light, light);
   const fixtures::TotalWrench wrench;
   const Receiver* const receivers[] = {&wrench};
-  TraceOptions options;
-  options.rays = 1 << 17;
-  const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
+  const TraceResult result =
+      trace(traceable, {}, std::span(&beam, 1), receivers, {.rays = 1 << 17});
   Vec3 force;
   for (size_t k = 0; k < 3; ++k) {
     force[static_cast<Eigen::Index>(k)] = result.sums[0].estimate(k).value;
@@ -228,9 +227,7 @@ Vec3 force_of(Scene scene, const Vec3& light) {
 }
 
 Scene sphere_of(const OpticalSurface& surface) {
-  Scene scene;
-  fixtures::add(scene, fixtures::sphere(1.0, 160), surface, "sphere");
-  return scene;
+  return fixtures::scene_of_part(fixtures::sphere(1.0, 160), surface, "sphere");
 }
 // Its shadow.
 const double disc = 160 * std::sin(pi / 160);
@@ -272,10 +269,8 @@ OpticalSurface hot(OpticalSurface surface, double reemitted, double front_emissi
 }
 
 Scene plate_of(const OpticalSurface& surface) {
-  Scene scene;
-  fixtures::add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 1, 0)), surface,
-                "plate");
-  return scene;
+  return fixtures::scene_of_part(fixtures::rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 1, 0)),
+                                 surface, "plate");
 }
 
 // F = A cos θ [d − (2/3) α r (ε_f − ε_b)/(ε_f + ε_b) n_f + reflections]: a black plate that sends

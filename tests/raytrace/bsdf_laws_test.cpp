@@ -193,19 +193,16 @@ TEST(SurfaceLaws, RaysCarryTheMeanDepartureAway) {
 TEST(SurfaceLaws, PowerAndMomentumBalanceAtEveryBounce) {
   for (const SurfaceKind& kind : surface_kinds(0.7)) {
     for (const double cosine : {1.0, 0.3}) {
-      Scene scene;
-      fixtures::add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(4, 0, 0), Vec3(0, 4, 0)),
-                    kind.surface, "plate");
-      const TraceableScene traceable(std::move(scene));
+      const TraceableScene traceable(fixtures::scene_of_part(
+          fixtures::rectangle(Vec3::Zero(), Vec3(4, 0, 0), Vec3(0, 4, 0)), kind.surface, "plate"));
       const double sine = std::sqrt(1 - cosine * cosine);
       const Vec3 light(-sine, 0, -cosine);
       const Beam beam =
           fixtures::beam(std::make_shared<fixtures::ParallelBeam>(2.0, 0.5), -2 * light, light);
       const fixtures::TotalWrench wrench;
       const Receiver* const receivers[] = {&wrench};
-      TraceOptions options;
-      options.rays = 1 << 16;
-      const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
+      const TraceResult result =
+          trace(traceable, {}, std::span(&beam, 1), receivers, {.rays = 1 << 16});
       const PowerBalance& power_balance = result.power_balance;
       EXPECT_LE(power_balance.closure, 1e-12) << kind.name;
       EXPECT_NEAR(power_balance.absorbed_W.value,

@@ -27,14 +27,11 @@ Outcome illuminate(Scene scene, const Vec3& direction, uint64_t rays = 1 << 20, 
   const double side = 2 * radius;
   const auto emitter = std::make_shared<ParallelBeam>(speed_of_light_m_s * side * side, side);
   const Beam beam = fixtures::beam(emitter, -10 * radius * direction.normalized(), direction);
-  TraceOptions options;
-  options.rays = rays;
-  options.seed = seed;
-  options.cutoff = 1e-14;
-  options.max_depth = 2000;
   const fixtures::TotalWrench wrench;
   const Receiver* const receivers[] = {&wrench};
-  const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
+  const TraceResult result =
+      trace(traceable, {}, std::span(&beam, 1), receivers,
+            {.rays = rays, .seed = seed, .max_depth = 2000, .cutoff = 1e-14});
   Outcome outcome{{}, {}, result.power_balance};
   for (size_t k = 0; k < 3; ++k) {
     outcome.force[k] = result.sums[0].estimate(k);
@@ -64,12 +61,10 @@ void expect_vector(const std::array<Estimate, 3>& estimate, const Vec3& truth, d
 
 // A 2 m × 1 m plate whose normal leans by `tilt` from +z towards +x.
 Scene tilted_plate(double tilt, const OpticalSurface& surface) {
-  Scene scene;
-  add(scene,
+  return fixtures::scene_of_part(
       fixtures::rectangle(Vec3::Zero(), Vec3(2 * std::cos(tilt), 0, -2 * std::sin(tilt)),
                           Vec3(0, 1, 0)),
       surface, "plate");
-  return scene;
 }
 
 class FlatPlate : public ::testing::TestWithParam<int> {};
@@ -102,9 +97,10 @@ TEST(Sphere, ForceIsDiscTimesOnePlusFourNinthsDiffuse) {
   const double shadow = rings * std::sin(pi / rings);
   for (const auto& [specular, diffuse] :
        {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {0.4, 0.4}}) {
-    Scene scene;
-    add(scene, fixtures::sphere(1.0, rings), grey_surface("s", specular, diffuse), "sphere");
-    const Outcome got = illuminate(std::move(scene), Vec3(0, 0, -1), 1 << 20);
+    const Outcome got =
+        illuminate(fixtures::scene_of_part(fixtures::sphere(1.0, rings),
+                                           grey_surface("s", specular, diffuse), "sphere"),
+                   Vec3(0, 0, -1), 1 << 20);
     const double exact = -shadow * (1 + 4.0 / 9.0 * diffuse);
     expect_vector(got.force, Vec3(0, 0, exact), pi);
     if (diffuse > 0.0) {  // as if it were a flat plate
@@ -145,9 +141,7 @@ TEST(CornerCube, ReturnsLightAlongItself) {
   const double power = 1.0;
   const auto emitter = std::make_shared<ParallelBeam>(power, 0.1, ParallelBeam::Shape::disc);
   const Beam beam = fixtures::beam(emitter, Vec3(0.3, 0.3, 0.3) - 3 * d, d);
-  TraceOptions options;
-  options.rays = 1 << 18;
-  const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, options);
+  const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, {.rays = 1 << 18});
   const Vec3 exact = 2 * power / speed_of_light_m_s * d;
   expect_vector(result.power_balance.force_N, exact, power / speed_of_light_m_s);
   EXPECT_NEAR(result.power_balance.escaped_W.value, power, 1e-9);
@@ -193,16 +187,12 @@ TEST(LambertianCavity, EffectiveReflectance) {
     return z > mouth_z;
   });
   for (const double reflectance : {0.3, 0.9}) {
-    Scene scene;
-    add(scene, wall, grey_surface("wall", 0, reflectance), "wall");
-    const TraceableScene traceable(std::move(scene));
+    const TraceableScene traceable(
+        fixtures::scene_of_part(wall, grey_surface("wall", 0, reflectance), "wall"));
     const auto emitter = std::make_shared<ParallelBeam>(1.0, 0.3, ParallelBeam::Shape::disc);
     const Beam beam = fixtures::beam(emitter, Vec3(0, 0, 5), Vec3(0, 0, -1));
-    TraceOptions options;
-    options.rays = 1 << 17;
-    options.max_depth = 1000;
-    options.cutoff = 1e-12;
-    const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, options);
+    const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {},
+                                     {.rays = 1 << 17, .max_depth = 1000, .cutoff = 1e-12});
     const double f = (1 + mouth_z) / 2;  // wall fraction of the sphere
     const double exact = reflectance * (1 - f) / (1 - reflectance * f);
     const Estimate escaped = result.power_balance.escaped_W;
@@ -224,10 +214,8 @@ class EvenCone final : public Emitter {
     for (int i = 0; i < ray_block; ++i) {
       const double z = 1 - (1 - low_) * sobol_fraction(samples.bits[2][i]);
       const double phi = 2 * pi * sobol_fraction(samples.bits[3][i]);
-      for (size_t k = 0; k < 3; ++k) rays.origin_m[k][i] = 0.0;
-      rays.direction[0][i] = std::sqrt(1 - z * z) * std::cos(phi);
-      rays.direction[1][i] = std::sqrt(1 - z * z) * std::sin(phi);
-      rays.direction[2][i] = z;
+      const double across = std::sqrt(1 - z * z);
+      fixtures::set_ray(rays, i, Vec3::Zero(), {across * std::cos(phi), across * std::sin(phi), z});
     }
   }
   double relative_intensity(double a) const override { return std::cos(a) >= low_ ? 1.0 : 0.0; }
@@ -240,15 +228,12 @@ TEST(PointSource, SquareCatchesItsSolidAngle) {
   const double side = 0.5;
   for (const double height : {1.0, 2.0, 4.0}) {
     const double half_angle = 1.1 * std::atan(side / std::numbers::sqrt2 / height);
-    Scene scene;
-    add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
-        grey_surface("black", 0, 0), "square");
-    const TraceableScene traceable(std::move(scene));
+    const TraceableScene traceable(fixtures::scene_of_part(
+        fixtures::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
+        grey_surface("black", 0, 0), "square"));
     const Beam beam =
         fixtures::beam(std::make_shared<EvenCone>(half_angle), Vec3(0, 0, height), Vec3(0, 0, -1));
-    TraceOptions options;
-    options.rays = 1 << 22;
-    const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, options);
+    const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, {.rays = 1 << 22});
     const double solid_angle = 4 * std::asin(side * side / (side * side + 4 * height * height));
     const double exact = solid_angle / (2 * pi * (1 - std::cos(half_angle)));
     EXPECT_TRUE(within(result.power_balance.absorbed_W, exact, exact))
@@ -263,10 +248,8 @@ TEST(PointSource, SquareCatchesItsSolidAngle) {
 // Cube 2 × 2 × 2 m, the validation cases of PyRASE, F/P in m².
 TEST(Cube, PyraseValidationCases) {
   const auto cube = [](double specular, double diffuse) {
-    Scene scene;
-    add(scene, fixtures::box(Vec3(-1, -1, -1), Vec3(1, 1, 1)), grey_surface("s", specular, diffuse),
-        "cube");
-    return scene;
+    return fixtures::scene_of_part(fixtures::box(Vec3(-1, -1, -1), Vec3(1, 1, 1)),
+                                   grey_surface("s", specular, diffuse), "cube");
   };
   expect_vector(illuminate(cube(0, 0.8), Vec3(-1, 0, 0)).force, Vec3(-6.1333333333, 0, 0), 4);
   expect_vector(illuminate(cube(0.8, 0), Vec3(-1, 0, 0)).force, Vec3(-7.2, 0, 0), 4);
@@ -279,10 +262,10 @@ TEST(Cube, OpposingLightBalances) {
   Vec3 sum = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
     for (const double sign : {-1.0, 1.0}) {
-      Scene scene;
-      add(scene, fixtures::box(Vec3(-1, -0.5, -0.2), Vec3(1, 0.5, 0.2)),
-          grey_surface("s", 0.2, 0.3), "box");
-      const Outcome got = illuminate(std::move(scene), sign * Vec3::Unit(k), 1 << 20);
+      const Outcome got =
+          illuminate(fixtures::scene_of_part(fixtures::box(Vec3(-1, -0.5, -0.2), Vec3(1, 0.5, 0.2)),
+                                             grey_surface("s", 0.2, 0.3), "box"),
+                     sign * Vec3::Unit(k), 1 << 20);
       for (int j = 0; j < 3; ++j) sum[j] += got.force[static_cast<size_t>(j)].value;
     }
   }

@@ -26,11 +26,9 @@ class GaussianParallelBeam final : public Emitter {
     for (int i = 0; i < ray_block; ++i) {
       const double u = sobol_fraction(samples.bits[0][i]), v = sobol_fraction(samples.bits[1][i]);
       const double radius = beam_radius_m * std::sqrt(-0.5 * std::log(u));
-      rays.origin_m[0][i] = radius * std::cos(2 * pi * v);
-      rays.origin_m[1][i] = radius * std::sin(2 * pi * v);
-      rays.origin_m[2][i] = 0.0;
-      rays.direction[0][i] = rays.direction[1][i] = 0.0;
-      rays.direction[2][i] = 1.0;
+      fixtures::set_ray(rays, i,
+                        {radius * std::cos(2 * pi * v), radius * std::sin(2 * pi * v), 0.0},
+                        Vec3::UnitZ());
     }
   }
   double relative_intensity(double angle_rad) const override { return angle_rad == 0.0 ? 1 : 0; }
@@ -69,13 +67,10 @@ double moment_m(double low, double high) {
 Scene tilted_rectangle(const OpticalSurface& surface) {
   const Vec3 centre(0.5 * (shadow_x_low + shadow_x_high), 0.5 * (shadow_y_low + shadow_y_high),
                     plate_height_m + plate_slope * 0.5 * (shadow_x_low + shadow_x_high));
-  Scene scene;
-  fixtures::add(
-      scene,
+  return fixtures::scene_of_part(
       fixtures::rectangle(centre, (shadow_x_high - shadow_x_low) * Vec3(1, 0, plate_slope),
                           Vec3(0, shadow_y_high - shadow_y_low, 0)),
       surface, "rectangle");
-  return scene;
 }
 
 // Power, force along x and z (along y there is none), torque, bins; where a fraction `s` is
@@ -149,13 +144,12 @@ Coverage coverage_with(int replicates) {
   const Receiver* const receivers[] = {&wrench, &bins};
   Coverage coverage{std::vector<double>(exact.size()), std::vector<double>(exact.size())};
   for (int seed = 0; seed < seeds; ++seed) {
-    TraceOptions options;
-    options.rays = static_cast<uint64_t>(replicates) * 1024;
-    options.replicates = replicates;
-    options.seed = 1000 + static_cast<uint64_t>(seed);
-    options.threads = 1;
     const std::vector<Estimate> found =
-        estimated_figures(trace(scene, {}, std::span(&beam, 1), receivers, options));
+        estimated_figures(trace(scene, {}, std::span(&beam, 1), receivers,
+                                {.rays = static_cast<uint64_t>(replicates) * 1024,
+                                 .replicates = replicates,
+                                 .seed = 1000 + static_cast<uint64_t>(seed),
+                                 .threads = 1}));
     for (size_t i = 0; i < exact.size(); ++i) {
       const double error = std::abs(found[i].value - exact[i]);
       const double reach = student_t_975(replicates) * found[i].standard_error;

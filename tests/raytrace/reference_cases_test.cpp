@@ -71,10 +71,8 @@ TEST_P(DiscOverSquare, MapAgreesWithTheReferenceWithinItsErrors) {
   const Beam beam = fixtures::beam(emitter, Vec3(0, 0, 1.5), Vec3(0, 0, -1));
   const SquareMap map;
   const Receiver* const receivers[] = {&map};
-  TraceOptions options;
-  options.rays = 1 << 24;
-  options.replicates = 32;
-  const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
+  const TraceResult result =
+      trace(traceable, {}, std::span(&beam, 1), receivers, {.rays = 1 << 24, .replicates = 32});
   const MapCheck check = compare(result.sums[0], reference, 0.0);
   // z² with errors from 32 replicates is F(1, 31): mean 31/29 = 1.069, fraction within 3: 99.5 %.
   EXPECT_NEAR(check.mean_square_z, 1.069, 0.12);
@@ -203,10 +201,7 @@ class Parallelogram final : public Emitter {
     for (int i = 0; i < ray_block; ++i) {
       const Vec3 at = (sobol_fraction(samples.bits[0][i]) - 0.5) * u_ +
                       (sobol_fraction(samples.bits[1][i]) - 0.5) * v_;
-      for (int k = 0; k < 3; ++k) {
-        rays.origin_m[k][i] = at[k];
-        rays.direction[k][i] = k == 2 ? 1.0 : 0.0;
-      }
+      fixtures::set_ray(rays, i, at, Vec3::UnitZ());
     }
   }
   double relative_intensity(double angle_rad) const override {
@@ -226,10 +221,9 @@ TEST(FacetedSpacecraft, ForceAndTorqueOfSixteenArticulations) {
     for (const Facet& facet : facets(c.theta1_deg * degree_rad, c.theta2_deg * degree_rad)) {
       if (facet.normal.dot(light) >= -1e-12) continue;  // lit on the front only
       const Vec3 u = facet.normal.unitOrthogonal() * std::sqrt(facet.area_m2);
-      Scene scene;
-      add(scene, fixtures::rectangle(facet.centre_m, u, facet.normal.cross(u)),
-          grey_surface("facet", 0.9, 0.1), "facet");
-      const TraceableScene traceable(std::move(scene));
+      const TraceableScene traceable(
+          fixtures::scene_of_part(fixtures::rectangle(facet.centre_m, u, facet.normal.cross(u)),
+                                  grey_surface("facet", 0.9, 0.1), "facet"));
       // Light that falls on a parallelogram 1.25 times the facet, edges parallel to the facet's.
       const RigidTransform lab_from_beam = frame_looking_along(light, facet.centre_m - 20 * light);
       const Quat beam_from_lab = lab_from_beam.rotation.conjugate();
@@ -238,10 +232,8 @@ TEST(FacetedSpacecraft, ForceAndTorqueOfSixteenArticulations) {
       const Beam beam{"light", emitter, lab_from_beam, Spectrum{}};
       const fixtures::TotalWrench wrench;
       const Receiver* const receivers[] = {&wrench};
-      TraceOptions options;
-      options.rays = 1 << 20;
-      options.max_depth = 1;
-      const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
+      const TraceResult result =
+          trace(traceable, {}, std::span(&beam, 1), receivers, {.rays = 1 << 20, .max_depth = 1});
       for (size_t k = 0; k < 6; ++k) {
         const Estimate e = result.sums[0].estimate(k);
         total[k] += e.value;

@@ -9,6 +9,13 @@
 
 namespace photorque::fixtures {
 
+inline void set_ray(RayBlock& rays, int i, const Vec3& origin_m, const Vec3& direction) {
+  for (int k = 0; k < 3; ++k) {
+    rays.origin_m[k][i] = origin_m[k];
+    rays.direction[k][i] = direction[k];
+  }
+}
+
 // Parallel light: fills a square of side `side_m` about the emitter's z axis, or a disc, uniformly.
 class ParallelBeam final : public Emitter {
  public:
@@ -20,13 +27,9 @@ class ParallelBeam final : public Emitter {
     for (int i = 0; i < ray_block; ++i) {
       const double u = sobol_fraction(samples.bits[0][i]), v = sobol_fraction(samples.bits[1][i]);
       const double radius = size_m_ * std::sqrt(u), angle = 2 * pi * v;
-      rays.origin_m[0][i] =
-          shape_ == Shape::square ? size_m_ * (u - 0.5) : radius * std::cos(angle);
-      rays.origin_m[1][i] =
-          shape_ == Shape::square ? size_m_ * (v - 0.5) : radius * std::sin(angle);
-      rays.origin_m[2][i] = 0.0;
-      rays.direction[0][i] = rays.direction[1][i] = 0.0;
-      rays.direction[2][i] = 1.0;
+      const Vec3 on_square(size_m_ * (u - 0.5), size_m_ * (v - 0.5), 0.0);
+      const Vec3 on_disc(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+      set_ray(rays, i, shape_ == Shape::square ? on_square : on_disc, Vec3::UnitZ());
     }
   }
   double relative_intensity(double angle_rad) const override {
@@ -57,12 +60,9 @@ class PillboxDisc final : public Emitter {
       const double theta = measure_ == Measure::angle
                                ? half_angle_rad_ * std::sqrt(f[2])
                                : std::asin(std::sin(half_angle_rad_) * std::sqrt(f[2]));
-      rays.origin_m[0][i] = radius * std::cos(around);
-      rays.origin_m[1][i] = radius * std::sin(around);
-      rays.origin_m[2][i] = 0.0;
-      rays.direction[0][i] = std::sin(theta) * std::cos(2 * pi * f[3]);
-      rays.direction[1][i] = std::sin(theta) * std::sin(2 * pi * f[3]);
-      rays.direction[2][i] = std::cos(theta);
+      set_ray(rays, i, {radius * std::cos(around), radius * std::sin(around), 0.0},
+              {std::sin(theta) * std::cos(2 * pi * f[3]), std::sin(theta) * std::sin(2 * pi * f[3]),
+               std::cos(theta)});
     }
   }
   double relative_intensity(double angle_rad) const override {
@@ -128,9 +128,8 @@ class TotalWrench final : public Receiver {
   size_t bins() const override { return 6; }
   void score(const Hits& hits, std::span<double> sums) const override {
     for (int i = 0; i < hits.count; ++i) {
-      const Vec3 at(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
-      const Vec3 force(hits.force_N[0][i], hits.force_N[1][i], hits.force_N[2][i]);
-      const Vec3 torque = at.cross(force);
+      const Vec3 force = hits.force_at_N(static_cast<size_t>(i));
+      const Vec3 torque = hits.position_at_m(static_cast<size_t>(i)).cross(force);
       for (int k = 0; k < 3; ++k) {
         sums[static_cast<size_t>(k)] += force[k];
         sums[static_cast<size_t>(3 + k)] += torque[k];
@@ -151,6 +150,12 @@ inline uint32_t add(Scene& scene, Mesh mesh, const OpticalSurface& surface,
   scene.surfaces.push_back(surface);
   scene.instances.push_back(instance);
   return static_cast<uint32_t>(scene.instances.size() - 1);
+}
+
+inline Scene scene_of_part(Mesh mesh, const OpticalSurface& surface, const std::string& node) {
+  Scene scene;
+  add(scene, std::move(mesh), surface, node);
+  return scene;
 }
 
 // A beam from `origin_m` along `direction`.

@@ -41,12 +41,10 @@ TEST(PowerBalance, ClosesForEveryReplicate) {
   const TraceableScene scene(busy_scene());
   const Beam beam = wide_cone(2.0);
   for (const int depth : {1, 2, 5, 64}) {
-    TraceOptions options;
-    options.rays = 1 << 17;
-    options.max_depth = depth;
-    options.cutoff = depth == 5 ? 1e-3 : 1e-9;
     const PowerBalance power_balance =
-        trace(scene, {}, std::span(&beam, 1), {}, options).power_balance;
+        trace(scene, {}, std::span(&beam, 1), {},
+              {.rays = 1 << 17, .max_depth = depth, .cutoff = depth == 5 ? 1e-3 : 1e-9})
+            .power_balance;
     EXPECT_LE(power_balance.closure, 1e-12);
     EXPECT_NEAR(power_balance.absorbed_W.value + power_balance.escaped_W.value +
                     power_balance.truncated_W.value,
@@ -68,9 +66,7 @@ TEST(PowerBalance, SurfacesAndRaysAgreeOnForceAndTorque) {
   const Beam beam = wide_cone(2.0);
   const fixtures::TotalWrench wrench;
   const Receiver* const receivers[] = {&wrench};
-  TraceOptions options;
-  options.rays = 1 << 20;
-  const TraceResult result = trace(scene, {}, std::span(&beam, 1), receivers, options);
+  const TraceResult result = trace(scene, {}, std::span(&beam, 1), receivers, {.rays = 1 << 20});
   for (size_t k = 0; k < 6; ++k) {
     const Estimate surfaces = result.sums[0].estimate(k);
     const Estimate rays =
@@ -115,10 +111,8 @@ TEST(Threads, SameBitsAtOneTwoAndSeven) {
     const fixtures::TotalWrench wrench;
     const ThreadCounter counter(static_cast<size_t>(threads));
     const Receiver* const receivers[] = {&wrench, &counter};
-    TraceOptions options;
-    options.rays = 1 << 20;
-    options.threads = threads;
-    const TraceResult result = trace(scene, lab_from_body_at(0.3, 0.2), beams, receivers, options);
+    const TraceResult result = trace(scene, lab_from_body_at(0.3, 0.2), beams, receivers,
+                                     {.rays = 1 << 20, .threads = threads});
     std::vector<double> all = result.sums[0].sums;
     all.insert(all.end(), result.sums[1].sums.begin(), result.sums[1].sums.end());
     all.push_back(result.power_balance.escaped_W.value);
@@ -135,9 +129,8 @@ TEST(Interaction, ABsdfThatAddsNothingChangesNoBit) {
     const Beam beam = wide_cone(2.0);
     const fixtures::TotalWrench wrench;
     const Receiver* const receivers[] = {&wrench};
-    TraceOptions options;
-    options.rays = 1 << 16;
-    const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
+    const TraceResult result =
+        trace(traceable, {}, std::span(&beam, 1), receivers, {.rays = 1 << 16});
     std::vector<double> all = result.sums[0].sums;
     all.push_back(result.power_balance.absorbed_W.value);
     all.push_back(result.power_balance.escaped_W.value);
@@ -162,8 +155,7 @@ TEST(Interaction, ABsdfThatAddsNothingChangesNoBit) {
 TEST(Seed, ChangesTheBitsAndNotTheMeaning) {
   const TraceableScene scene(busy_scene());
   const Beam beam = wide_cone(2.0);
-  TraceOptions options;
-  options.rays = 1 << 17;
+  TraceOptions options{.rays = 1 << 17};
   const Estimate a = trace(scene, {}, std::span(&beam, 1), {}, options).power_balance.absorbed_W;
   options.seed = 2;
   const Estimate b = trace(scene, {}, std::span(&beam, 1), {}, options).power_balance.absorbed_W;
@@ -180,9 +172,7 @@ TEST(LowDiscrepancy, BeatsPseudoRandomErrorTenfold) {
   const TraceableScene scene(std::move(plate));
   const Beam beam = fixtures::beam(std::make_shared<fixtures::ParallelBeam>(1.0, 1.0),
                                    Vec3(0, 0, 3), Vec3(0, 0, -1));
-  TraceOptions options;
-  options.rays = 1 << 20;
-  const TraceResult result = trace(scene, {}, std::span(&beam, 1), {}, options);
+  const TraceResult result = trace(scene, {}, std::span(&beam, 1), {}, {.rays = 1 << 20});
   const double p = 0.307;
   EXPECT_LT(result.power_balance.absorbed_W.standard_error,
             0.1 * std::sqrt(p * (1 - p) / static_cast<double>(result.rays)));
@@ -199,10 +189,8 @@ TEST(Bands, EachBandSeesItsOwnSurfaceAndTheSumIsConserved) {
   Beam beam = fixtures::beam(std::make_shared<fixtures::ParallelBeam>(3.0, 1.0), Vec3(0, 0, 3),
                              Vec3(0, 0, -1));
   beam.spectrum = {Spectrum::Shape::gaussian, 600e-9, 20e-9, 0.0};  // half of it in each band
-  TraceOptions options;
-  options.rays = 1 << 14;
   const PowerBalance power_balance =
-      trace(traceable, {}, std::span(&beam, 1), {}, options).power_balance;
+      trace(traceable, {}, std::span(&beam, 1), {}, {.rays = 1 << 14}).power_balance;
   EXPECT_NEAR(power_balance.absorbed_W.value, 1.5 * 0.25 + 1.5, 1e-12);
   EXPECT_NEAR(power_balance.escaped_W.value, 1.5 * 0.75, 1e-12);
   EXPECT_LE(power_balance.closure, 1e-12);
@@ -219,26 +207,22 @@ TEST(Transmission, GoesStraightOnThroughBothSides) {
   const TraceableScene traceable(std::move(scene));
   const Beam beam = fixtures::beam(std::make_shared<fixtures::ParallelBeam>(1.0, 1.0),
                                    Vec3(0, 0, 3), Vec3(0, 0, -1));
-  TraceOptions options;
-  options.rays = 1 << 14;
   const PowerBalance power_balance =
-      trace(traceable, {}, std::span(&beam, 1), {}, options).power_balance;
+      trace(traceable, {}, std::span(&beam, 1), {}, {.rays = 1 << 14}).power_balance;
   EXPECT_NEAR(power_balance.absorbed_by_instance_W[floor].value, 0.25, 1e-12);
 }
 
 // A source at 1e9 m must hit what it is aimed at: it is brought near in double precision.
 TEST(FarSource, KeepsItsAim) {
-  Scene scene;
-  add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0)),
-      grey_surface("black", 0, 0), "plate");
-  const TraceableScene traceable(std::move(scene));
+  const TraceableScene traceable(
+      fixtures::scene_of_part(fixtures::rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0)),
+                              grey_surface("black", 0, 0), "plate"));
   const Vec3 d = Vec3(1, 2, -3).normalized();
   const Beam beam = fixtures::beam(std::make_shared<fixtures::ParallelBeam>(1.0, 0.1), -1e9 * d, d);
   const fixtures::TotalWrench wrench;
   const Receiver* const receivers[] = {&wrench};
-  TraceOptions options;
-  options.rays = 1 << 16;
-  const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
+  const TraceResult result =
+      trace(traceable, {}, std::span(&beam, 1), receivers, {.rays = 1 << 16});
   EXPECT_NEAR(result.power_balance.absorbed_W.value, 1.0, 1e-12);
   // Centred on the origin: no torque, to what a double resolves at 1e9 m (1e-7 m).
   for (size_t k = 3; k < 6; ++k) {
@@ -256,9 +240,8 @@ TEST(MirroredInstance, KeepsItsFrontOutside) {
   const TraceableScene traceable(std::move(scene));
   const Beam beam = fixtures::beam(std::make_shared<fixtures::ParallelBeam>(1.0, 0.4),
                                    Vec3(0, 0, 3), Vec3(0, 0, -1));
-  TraceOptions options;
-  options.rays = 1 << 14;
-  EXPECT_NEAR(trace(traceable, {}, std::span(&beam, 1), {}, options).power_balance.absorbed_W.value,
+  EXPECT_NEAR(trace(traceable, {}, std::span(&beam, 1), {}, {.rays = 1 << 14})
+                  .power_balance.absorbed_W.value,
               1.0, 1e-12);
 }
 

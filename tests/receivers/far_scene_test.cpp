@@ -31,21 +31,18 @@ TEST(FarScene, RaysLandWhereTheyShould) {
   const Scene scene = far_plate();
   const TraceableScene traceable(scene);
   const Beam lamp = fixtures::source("led",
-                                     {{"power_W", fixtures::number(1.0)},
-                                      {"aperture_diameter_m", fixtures::number(0.4 * side_m)},
-                                      {"profile", fixtures::text("pillbox")},
-                                      {"half_angle_deg", fixtures::number(0.5)},
-                                      {"pillbox_measure", fixtures::text("angle")}},
+                                     {{"power_W", {1.0}},
+                                      {"aperture_diameter_m", {0.4 * side_m}},
+                                      {"profile", {"pillbox"}},
+                                      {"half_angle_deg", {0.5}},
+                                      {"pillbox_measure", {"angle"}}},
                                      Vec3(far_m, far_m, 0.1 * side_m));
   Vec3 low = Vec3::Constant(INFINITY), high = -low, sum = Vec3::Zero();
   size_t count = 0;
-  TraceOptions options;
-  options.rays = 1 << 14;
-  options.replicates = 8;
-  options.threads = 1;
+  TraceOptions options{.rays = 1 << 14, .replicates = 8, .threads = 1};
   options.observe = [&](const HitOrigin&, const Hits& hits) {
     for (int i = 0; i < hits.count; ++i) {
-      const Vec3 at(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
+      const Vec3 at = hits.position_at_m(static_cast<size_t>(i));
       low = low.cwiseMin(at);
       high = high.cwiseMax(at);
       sum += at;
@@ -87,14 +84,10 @@ Traced trace_small(const Vec3& at_m, const RigidTransform& lab_from_body, const 
   const FluxMapReceiver map = fixtures::map_of(scene, 8);
   const Receiver* const receivers[] = {&map};
   Traced found;
-  TraceOptions options;
-  options.rays = 1 << 15;
-  options.replicates = 8;
-  options.threads = 1;
+  TraceOptions options{.rays = 1 << 15, .replicates = 8, .threads = 1};
   options.observe = [&](const HitOrigin&, const Hits& hits) {
     for (int i = 0; i < hits.count; ++i) {
-      const Vec3 hit_m(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
-      found.hits_m.push_back(hit_m - at_m);
+      found.hits_m.push_back(hits.position_at_m(static_cast<size_t>(i)) - at_m);
     }
   };
   const TraceResult result =
@@ -115,18 +108,15 @@ TEST(FarScene, DistanceChangesNeitherHitsNorPowersNorForces) {
     const char* kind;
     SettingsNode::Table keys;
   };
-  const Case cases[] = {
-      {"led",
-       "led",
-       {{"power_W", fixtures::number(1.0)},
-        {"aperture_diameter_m", fixtures::number(side_m)},
-        {"profile", fixtures::text("gaussian")},
-        {"fwhm_deg", fixtures::number(20.0)}}},
-      {"parallel", "sun", {{"angular_radius_deg", fixtures::number(0.0)}}},
-      {"disc", "sun", {{"angular_radius_deg", fixtures::number(0.27)}}},
-      {"buie",
-       "sun",
-       {{"sun_shape", fixtures::text("buie")}, {"circumsolar_ratio", fixtures::number(0.3)}}}};
+  const Case cases[] = {{"led",
+                         "led",
+                         {{"power_W", {1.0}},
+                          {"aperture_diameter_m", {side_m}},
+                          {"profile", {"gaussian"}},
+                          {"fwhm_deg", {20.0}}}},
+                        {"parallel", "sun", {{"angular_radius_deg", {0.0}}}},
+                        {"disc", "sun", {{"angular_radius_deg", {0.27}}}},
+                        {"buie", "sun", {{"sun_shape", {"buie"}}, {"circumsolar_ratio", {0.3}}}}};
   for (const Case& one : cases) {
     const auto traced = [&](const Vec3& at_m) {
       const Vec3 direction(0.2, -0.1, -1.0);
@@ -199,9 +189,8 @@ TEST(FarScene, DistanceDoesNotChangeQuadrature) {
   const auto wrench = [](const Vec3& at_m) {
     const Scene scene = small_scene(at_m);
     const TraceableScene traceable(scene);
-    const Beam sun =
-        fixtures::source("sun", {{"irradiance_W_m2", fixtures::number(fixtures::irradiance_W_m2)}},
-                         Vec3::Zero(), Vec3(0.2, -0.1, -1.0), scene.radius_m());
+    const Beam sun = fixtures::source("sun", {{"irradiance_W_m2", {fixtures::irradiance_W_m2}}},
+                                      Vec3::Zero(), Vec3(0.2, -0.1, -1.0), scene.radius_m());
     SunlitEffort effort;
     effort.scattered.rays = 1 << 12;
     effort.mirror_cells = 200;

@@ -15,12 +15,10 @@ using fixtures::add;
 using fixtures::box;
 using fixtures::gaussian_led;
 using fixtures::map_of;
-using fixtures::number;
 using fixtures::pillbox_disc;
 using fixtures::rectangle;
 using fixtures::shaded_square;
 using fixtures::source;
-using fixtures::text;
 
 Estimate direct(const Gathered& gathered, const FluxMapReceiver& map, size_t bin) {
   std::vector<double> values;
@@ -96,22 +94,20 @@ TEST(Gather, AgreesWithRaysWithinTheErrorsOfBoth) {
       gaussian_led(0.05, 9.0, {0.3, 0, 1.4}, {-0.2, 0, -1}),
       gaussian_led(0.005, 14.0, {-0.2, 0.1, 1.0}, {0.2, -0.1, -1}),
       source("led",
-             {{"power_W", number(1.0)},
-              {"aperture_diameter_m", number(0.3)},
-              {"profile", text("pillbox")},
-              {"half_angle_deg", number(4)},
-              {"pillbox_measure", text("solid_angle")},
-              {"halo_fraction", number(0.2)},
-              {"halo_fwhm_deg", number(12)}},
+             {{"power_W", {1.0}},
+              {"aperture_diameter_m", {0.3}},
+              {"profile", {"pillbox"}},
+              {"half_angle_deg", {4.0}},
+              {"pillbox_measure", {"solid_angle"}},
+              {"halo_fraction", {0.2}},
+              {"halo_fwhm_deg", {12.0}}},
              {0, 0.05, 1.2}, {0, 0, -1}),
-      source("sun", {{"irradiance_W_m2", number(10)}, {"angular_radius_deg", number(2)}}, {},
+      source("sun", {{"irradiance_W_m2", {10.0}}, {"angular_radius_deg", {2.0}}}, {},
              {0.2, 0.3, -1})};
   const RigidTransform lab_from_body = lab_from_body_at(20 * degree_rad, 0.4);
   const Gathered gathered = gather_direct(traceable, lab_from_body, beams, map, {});
   const Receiver* const receivers[] = {&map};
-  TraceOptions options;
-  options.rays = 1 << 23;
-  const TraceResult traced = trace(traceable, lab_from_body, beams, receivers, options);
+  const TraceResult traced = trace(traceable, lab_from_body, beams, receivers, {.rays = 1 << 23});
 
   double squares = 0.0, total = 0.0, rays_total = 0.0, variance = 0.0;
   int compared = 0;
@@ -143,8 +139,8 @@ TEST(Gather, SunOnAPlateIsCosineOfItsAngle) {
   for (const int side : {8, 33}) {  // 33: tiles of 16 bins leave some that are one bin wide
     const FluxMapReceiver map = map_of(traceable.scene(), side);
     for (const double radius_deg : {0.0, 0.2665, 5.0}) {
-      const Beam sun = source(
-          "sun", {{"irradiance_W_m2", number(1361)}, {"angular_radius_deg", number(radius_deg)}});
+      const Beam sun =
+          source("sun", {{"irradiance_W_m2", {1361.0}}, {"angular_radius_deg", {radius_deg}}});
       const Gathered g = gather_direct(traceable, lab_from_body_at(60 * degree_rad, 0.0),
                                        std::span(&sun, 1), map, {});
       EXPECT_EQ(g.shadow_rays, 0u);

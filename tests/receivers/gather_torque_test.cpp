@@ -10,7 +10,6 @@ namespace photorque {
 namespace {
 
 using fixtures::add;
-using fixtures::number;
 using fixtures::rectangle;
 
 TorqueMapReceiver torque_map_of(const Scene& scene, int bins, const Vec3& about_m) {
@@ -52,8 +51,8 @@ TEST(GatherTorque, SunOnEitherSideOfAGreyPlateIsTheTextbooksForce) {
     const TraceableScene traceable(scene);
     const Vec3 about_m(0.05, 0.4, -0.3);
     const TorqueMapReceiver map = torque_map_of(scene, 12, about_m);
-    const Beam sun = fixtures::source(
-        "sun", {{"irradiance_W_m2", number(1361)}, {"angular_radius_deg", number(0.0)}});
+    const Beam sun =
+        fixtures::source("sun", {{"irradiance_W_m2", {1361.0}}, {"angular_radius_deg", {0.0}}});
     const RigidTransform attitude = lab_from_body_at(tilt_deg * degree_rad, 0.6);
     const TorqueMap found =
         direct_of(map, gather_torque(traceable, attitude, std::span(&sun, 1), map, {}));
@@ -105,9 +104,7 @@ TEST(GatherTorque, AgreesWithRaysBinByBin) {
   const RigidTransform attitude = lab_from_body_at(10 * degree_rad, 0.4);
   const Gathered gathered = gather_torque(scene, attitude, beams, map, {});
   const Receiver* const receivers[] = {&map};
-  TraceOptions options;
-  options.rays = 1 << 22;
-  const TraceResult traced = trace(scene, attitude, beams, receivers, options);
+  const TraceResult traced = trace(scene, attitude, beams, receivers, {.rays = 1 << 22});
   EXPECT_GT(gathered.shaded_pairs, 20u);
   double squares = 0.0;
   int compared = 0;

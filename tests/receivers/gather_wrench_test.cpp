@@ -151,9 +151,7 @@ TEST(GatherWrench, AgreesWithRays) {
     const RigidTransform attitude = lab_from_body_at(20 * degree_rad, 0.4);
     const WrenchEstimate own = direct_of(body, gather->wrench(attitude, body, {}));
     const Receiver* const receivers[] = {&body};
-    TraceOptions options;
-    options.rays = 1 << 22;
-    const TraceResult traced = trace(traceable, attitude, beams, receivers, options);
+    const TraceResult traced = trace(traceable, attitude, beams, receivers, {.rays = 1 << 22});
     const WrenchEstimate rays = body.direct(traced.sums[0]);
     for (Eigen::Index k = 0; k < 3; ++k) {
       const double force_N =

@@ -21,9 +21,6 @@
 namespace photorque {
 namespace {
 
-using fixtures::number;
-using fixtures::text;
-
 // Means of the five programs with three standard deviations between them: absorbed power [kW] and
 // the brightest of 100 × 100 bins [kW/m²]; and peak_of() of their mean map.
 struct HeliostatCase {
@@ -66,10 +63,10 @@ struct Layout {
 };
 
 SettingsNode::Table pillbox_sun(double radius_mrad) {
-  return {{"angular_radius_deg", number(1e-3 * radius_mrad / degree_rad)}};
+  return {{"angular_radius_deg", {1e-3 * radius_mrad / degree_rad}}};
 }
 SettingsNode::Table buie_sun(double ratio) {
-  return {{"sun_shape", text("buie")}, {"circumsolar_ratio", number(ratio)}};
+  return {{"sun_shape", {"buie"}}, {"circumsolar_ratio", {ratio}}};
 }
 
 std::vector<Heliostat> field() {
@@ -187,14 +184,13 @@ Flux trace_case(const Layout& layout, uint32_t facets, uint64_t rays) {
   const Scene scene = build(layout, facets);
   const double radius_m = scene.radius_m();
   SettingsNode::Table keys = layout.sun;
-  keys["irradiance_W_m2"] = number(1000);
+  keys["irradiance_W_m2"] = {1000.0};
   const Beam sun = fixtures::source("sun", std::move(keys), Vec3::Zero(), -layout.to_sun, radius_m);
   const FluxMapReceiver map("receiver", scene,
                             make_surface_grid(scene, scene.instances_of("receiver"), {}));
   const TraceableScene traceable(scene);
   const Receiver* const receivers[] = {&map};
-  TraceOptions options;
-  options.rays = rays;
+  const TraceOptions options{.rays = rays};
   BinSums sums = trace(traceable, {}, std::span(&sun, 1), receivers, options).sums[0];
   // The cases count mirrored light alone; at low sun its own light falls on the receiver's front.
   for (int r = 0; r < options.replicates; ++r) {

@@ -30,9 +30,7 @@ struct LitBox {
     lab_from_lamp.translation_m = Vec3(0.5, 0.5, 5.0);
     const Beam beam{"lamp", std::make_shared<ParallelBeam>(4.0, 2.0), lab_from_lamp, {}};
     const Receiver* const receivers[] = {&watch};
-    TraceOptions options;
-    options.rays = 1 << 18;
-    result = trace(TraceableScene(scene), {}, std::span(&beam, 1), receivers, options);
+    result = trace(TraceableScene(scene), {}, std::span(&beam, 1), receivers, {.rays = 1 << 18});
     lit = watch.lit_inside(result.sums[0]);
   }
 };

@@ -39,8 +39,8 @@ class RandomLamps {
     SettingsNode::Table keys = profile();
     const double diameter_m = log_uniform(1e-4, 0.5);
     d.height_m = log_uniform(0.1, 5.0);
-    keys["power_W"] = number(1.0);
-    keys["aperture_diameter_m"] = number(diameter_m);
+    keys["power_W"] = {1.0};
+    keys["aperture_diameter_m"] = {diameter_m};
     d.beam = source("led", keys, Vec3::Zero(), Vec3::UnitZ());
     const DiscLight light(*d.beam.emitter, *d.beam.aperture);
     d.foot_m = 0.5 * diameter_m + d.height_m * std::tan(light.reach_rad());
@@ -72,27 +72,25 @@ class RandomLamps {
       case 0: {
         const double order = log_uniform(2.0, 100.0);
         called("super_gaussian", order);
-        return {{"profile", text("super_gaussian")},
-                {"fwhm_deg", number(width_deg)},
-                {"order", number(order)}};
+        return {{"profile", {"super_gaussian"}}, {"fwhm_deg", {width_deg}}, {"order", {order}}};
       }
       case 1:
         called("core and halo", 0.2);
-        return {{"profile", text("pillbox")},
-                {"half_angle_deg", number(width_deg)},
-                {"pillbox_measure", text("angle")},
-                {"halo_fraction", number(0.2)},
-                {"halo_fwhm_deg", number(2.0 * width_deg)}};
+        return {{"profile", {"pillbox"}},
+                {"half_angle_deg", {width_deg}},
+                {"pillbox_measure", {"angle"}},
+                {"halo_fraction", {0.2}},
+                {"halo_fwhm_deg", {2.0 * width_deg}}};
       case 2:
         called("gaussian", 2.0);
-        return {{"profile", text("gaussian")}, {"fwhm_deg", number(width_deg)}};
+        return {{"profile", {"gaussian"}}, {"fwhm_deg", {width_deg}}};
       default: {
         const std::array<const char*, 3> measures = {"angle", "solid_angle", "projected"};
         const char* measure = measures[static_cast<size_t>(integer(0, 2))];
         called(measure, 0.0);
-        return {{"profile", text("pillbox")},
-                {"half_angle_deg", number(width_deg)},
-                {"pillbox_measure", text(measure)}};
+        return {{"profile", {"pillbox"}},
+                {"half_angle_deg", {width_deg}},
+                {"pillbox_measure", {measure}}};
       }
     }
   }

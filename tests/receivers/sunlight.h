@@ -10,8 +10,8 @@ inline constexpr double irradiance_W_m2 = 1361.0;
 inline constexpr double pressure_Pa = irradiance_W_m2 / speed_of_light_m_s;
 
 inline Beam sun(double angular_radius_deg) {
-  return source("sun", {{"irradiance_W_m2", number(irradiance_W_m2)},
-                        {"angular_radius_deg", number(angular_radius_deg)}});
+  return source("sun", {{"irradiance_W_m2", {irradiance_W_m2}},
+                        {"angular_radius_deg", {angular_radius_deg}}});
 }
 
 // F = P A cos θ [(1 − ρs) d − 2 (ρs cos θ + ρd/3) n] on a flat plate whose normal n looks against

@@ -217,10 +217,8 @@ Eigen::Array2d against_rays(const TraceableScene& known, const TraceableScene& t
   for (int i = 0; i < directions; ++i) {
     const RigidTransform attitude{Quat{uniform(), uniform(), uniform(), uniform()}.normalized(),
                                   Vec3::Zero()};
-    TraceOptions options;
-    options.rays = 1 << 18;
-    options.replicates = 64;
-    const TraceResult result = trace(traced, attitude, std::span(&beam, 1), receivers, options);
+    const TraceResult result = trace(traced, attitude, std::span(&beam, 1), receivers,
+                                     {.rays = 1 << 18, .replicates = 64});
     const SunlitWrench own = body->wrench(attitude, 1e-9);
     const WrenchSum bounced = 0.5 * (own.bounced.head<6>() + own.bounced.tail<6>());
     const WrenchSum scattered = 0.5 * (own.bounced.head<6>() - own.bounced.tail<6>());

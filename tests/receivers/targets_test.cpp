@@ -10,9 +10,6 @@
 namespace photorque {
 namespace {
 
-using fixtures::number;
-using fixtures::text;
-
 // A Sun that the tracer does not know as parallel light.
 class WholeDisc final : public Emitter {
  public:
@@ -43,8 +40,7 @@ Found trace_sun(const Scene& scene, const Beam& sun, const RigidTransform& lab_f
                             make_surface_grid(scene, scene.instances_of("receiver"), {}));
   const TraceableScene traceable(scene);
   const Receiver* const receivers[] = {&map};
-  TraceOptions options;
-  options.rays = rays;
+  TraceOptions options{.rays = rays};
   std::atomic<uint64_t> first_hits = 0;
   options.observe = [&](const HitOrigin&, const Hits& hits) {
     if (hits.depth[0] == 0) first_hits += static_cast<uint64_t>(hits.count);
@@ -85,11 +81,11 @@ TEST(Targets, GiveTheTotalsOfTheWholeDisc) {
   const RigidTransform turned{Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized())),
                               Vec3::Zero()};
   const std::pair<const char*, SettingsNode::Table> suns[] = {
-      {"parallel", {{"angular_radius_deg", number(0.0)}}},
-      {"disc", {{"angular_radius_deg", number(0.27)}}},
-      {"wide", {{"angular_radius_deg", number(12.0)}}},
-      {"gaussian", {{"sun_shape", text("gaussian")}, {"sun_shape_sigma_mrad", number(20.0)}}},
-      {"buie", {{"sun_shape", text("buie")}, {"circumsolar_ratio", number(0.3)}}}};
+      {"parallel", {{"angular_radius_deg", {0.0}}}},
+      {"disc", {{"angular_radius_deg", {0.27}}}},
+      {"wide", {{"angular_radius_deg", {12.0}}}},
+      {"gaussian", {{"sun_shape", {"gaussian"}}, {"sun_shape_sigma_mrad", {20.0}}}},
+      {"buie", {{"sun_shape", {"buie"}}, {"circumsolar_ratio", {0.3}}}}};
   for (const auto& [name, keys] : suns) {
     const Beam sun = fixtures::source("sun", keys, Vec3::Zero(), Vec3(0.3, -0.2, -1), radius_m);
     Beam whole = sun;
@@ -120,17 +116,15 @@ TEST(Targets, ErrorsHoldTheClosedForm) {
                 "receiver");
   fixtures::add(scene, fixtures::rectangle(Vec3(-30, 20, 5), Vec3(1, 0, 0), Vec3(0, 1, 0)), black,
                 "other");
-  const Beam sun = fixtures::source(
-      "sun", {{"angular_radius_deg", number(0.5)}, {"irradiance_W_m2", number(1000)}}, Vec3::Zero(),
-      Vec3(0, 0, -1), scene.radius_m());
+  const Beam sun =
+      fixtures::source("sun", {{"angular_radius_deg", {0.5}}, {"irradiance_W_m2", {1000.0}}},
+                       Vec3::Zero(), Vec3(0, 0, -1), scene.radius_m());
   const TraceableScene traceable(scene);
   double squares = 0.0;
   constexpr int seeds = 24;
   for (int seed = 1; seed <= seeds; ++seed) {
-    TraceOptions options;
-    options.rays = 1 << 16;
-    options.seed = static_cast<uint64_t>(seed);
-    const TraceResult result = trace(traceable, {}, std::span(&sun, 1), {}, options);
+    const TraceResult result = trace(traceable, {}, std::span(&sun, 1), {},
+                                     {.rays = 1 << 16, .seed = static_cast<uint64_t>(seed)});
     const Estimate absorbed = result.power_balance.absorbed_by_instance_W[0];
     EXPECT_NEAR(absorbed.value, 500.0, 4.5 * absorbed.standard_error) << seed;
     EXPECT_LT(absorbed.standard_error, 1.0);

@@ -54,8 +54,8 @@ TEST(TorqueMap, AsPublishedTakesTheCosineOnceMoreAndAbsorbsAll) {
       using Force = TorqueMapReceiver::Force;
       const TorqueMapReceiver own("own", scene, grid, Vec3::Zero(), Force::momentum);
       const TorqueMapReceiver printed("printed", scene, grid, Vec3::Zero(), Force::as_published);
-      const Beam sun = fixtures::source("sun", {{"irradiance_W_m2", fixtures::number(1000)},
-                                                {"angular_radius_deg", fixtures::number(0.0)}});
+      const Beam sun =
+          fixtures::source("sun", {{"irradiance_W_m2", {1000.0}}, {"angular_radius_deg", {0.0}}});
       const TraceableScene traceable(scene);
       const Receiver* const receivers[] = {&own, &printed};
       const RigidTransform attitude = lab_from_body_at(tilt_deg * degree_rad, 0.3);

@@ -7,6 +7,7 @@
 #include "scenes/surfaces/settings.h"
 #include "tests/files.h"
 #include "tests/refusal.h"
+#include "tests/settings.h"
 
 namespace photorque {
 namespace {
@@ -59,11 +60,9 @@ TEST(BrdfFile, EveryTruncationIsReadOrRefused) {
   }
 }
 
-Settings material_with(const SettingsNode::Table& more) {
-  SettingsNode::Table table = {{"name", {"paint"}}};
-  for (const auto& [key, node] : more) table[key] = SettingsNode{node.value, {"lab.toml", 4}};
-  return Settings(std::make_shared<const SettingsNode>(SettingsNode{table, {"lab.toml", 3}}),
-                  "material[0]");
+Settings material_with(SettingsNode::Table table) {
+  table["name"] = {"paint"};
+  return test::settings_of(std::move(table), "material[0]");
 }
 
 GltfModel painted_with(const Settings& material, const std::string& brdf) {
@@ -118,12 +117,12 @@ TEST(MeasuredMaterial, ThatShinesOrIsMissingIsRefused) {
   EXPECT_EQ(refusal_of([&] {
               painted_with(plain, "incidence_deg,scatter_deg,azimuth_deg,brdf_1_sr\n0,0,0,0.35\n");
             }),
-            "lab.toml:4: material[0].brdf_file: found a reflectance of 1.1 at 0 deg, expected at "
+            "test.toml:7: material[0].brdf_file: found a reflectance of 1.1 at 0 deg, expected at "
             "most 1 at every angle, or a brdf_scale");
   EXPECT_EQ(refusal_of([&] {
               painted_with(material_with({{"brdf_file", {"scam.csv"}}}), "");
             }),
-            "lab.toml:4: material[0].brdf_file: found \"scam.csv\", expected an existing file, "
+            "test.toml:7: material[0].brdf_file: found \"scam.csv\", expected an existing file, "
             "relative to "
             "the folder of the experiment");
   EXPECT_THAT(refusal_of([&] {

@@ -6,6 +6,7 @@
 #include "scenes/cad/model.h"
 #include "scenes/cad/part.h"
 #include "scenes/experiment/experiment.h"
+#include "tests/settings.h"
 
 namespace photorque {
 namespace {
@@ -30,6 +31,14 @@ Vec3 twice_area(const std::array<Vec3, 3>& p) {
   return (p[1] - p[0]).cross(p[2] - p[0]);
 }
 
+double area_in_triangles(const std::vector<Vec3>& polygon) {
+  double area = 0.0;
+  for (const auto& [a, b, c] : cad::triangles_of(polygon)) {
+    area += 0.5 * twice_area({polygon[a], polygon[b], polygon[c]}).norm();
+  }
+  return area;
+}
+
 struct Extent {
   size_t triangles = 0;
   double area_m2 = 0.0, volume_m3 = 0.0;  // volume by the divergence theorem: positive outwards
@@ -50,22 +59,24 @@ Extent extent_of(const Scene& scene) {
   return extent;
 }
 
+using StlFacet = std::array<float, 9>;  // x, y, z of three corners
+
+// Without a normal or attributes.
+std::string facet_bytes(const StlFacet& corners) {
+  return std::string(12, '\0') +
+         std::string(reinterpret_cast<const char*>(corners.data()), sizeof corners) +
+         std::string(2, '\0');
+}
+
 // A unit tetrahedron at the origin: volume 1/6, area 3/2 + √3/2.
 std::string tetrahedron_stl() {
-  const std::array<std::array<std::array<float, 3>, 3>, 4> facets = {
-      {{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}},
-       {{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
-       {{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}}},
-       {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}};
+  const StlFacet facets[] = {{0, 0, 0, 0, 1, 0, 1, 0, 0},
+                             {0, 0, 0, 1, 0, 0, 0, 0, 1},
+                             {0, 0, 0, 0, 0, 1, 0, 1, 0},
+                             {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   std::string bytes(80, ' ');
   bytes += word_bytes(4);
-  for (const auto& facet : facets) {
-    bytes += std::string(12, '\0');
-    for (const auto& corner : facet) {
-      bytes.append(reinterpret_cast<const char*>(corner.data()), sizeof corner);
-    }
-    bytes += std::string(2, '\0');
-  }
+  for (const StlFacet& facet : facets) bytes += facet_bytes(facet);
   return bytes;
 }
 
@@ -136,14 +147,11 @@ TEST(Stl, ABinaryFileThatBeginsWithSolidIsBinary) {
 TEST(Obj, AFaceThatCrossesItselfIsRefused) {
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 3 0.2 0.1\n";
   for (const char* face : {"f 1 2 4 3\n", "f 1 3 2 4\n", "f 1 3 2 4 5\n"}) {
-    EXPECT_THAT(
-        refusal_of([&] { read_cad_bytes(corners + face, "part.obj", CadFormat::obj, {1.0}); }),
-        HasSubstr("part.obj:6: f: found a face whose edges cross each other"));
+    EXPECT_THAT(refusal_of([&] { obj(corners + face); }),
+                HasSubstr("part.obj:6: f: found a face whose edges cross each other"));
   }
   // A quad that is not plane, one that is hollow, and one with a corner twice.
-  for (const char* face : {"f 1 2 5 4\n", "f 1 2 3 3\n", "f 4 1 2 3 2\n"}) {
-    read_cad_bytes(corners + face, "part.obj", CadFormat::obj, {1.0});
-  }
+  for (const char* face : {"f 1 2 5 4\n", "f 1 2 3 3\n", "f 4 1 2 3 2\n"}) obj(corners + face);
 }
 
 TEST(Cad, AxesAndUnitsAreAsAsked) {
@@ -182,44 +190,32 @@ TEST(Obj, PolygonsKeepTheirArea) {
     const double x = 2.0 * tooth;
     comb.insert(comb.end(), {{x + 1, 1, 0}, {x + 1, 2, 0}, {x, 2, 0}, {x, 1, 0}});
   }
-  double area = 0.0;
+  EXPECT_NEAR(area_in_triangles(comb), 149.0, 1e-9);
   for (const auto& [a, b, c] : cad::triangles_of(comb)) {
-    const Vec3 twice = twice_area({comb[a], comb[b], comb[c]});
-    EXPECT_GE(twice.z(), 0.0);  // none lies the other way round
-    area += 0.5 * twice.z();
+    // None lies the other way round.
+    EXPECT_GE(twice_area({comb[a], comb[b], comb[c]}).z(), 0.0);
   }
-  EXPECT_NEAR(area, 149.0, 1e-9);
   // A square ring as one outline with a slit: 9 − 1.
   const std::vector<Vec3> ring = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {0, 0, 0},
                                   {1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}, {1, 1, 0}};
-  area = 0.0;
-  for (const auto& [a, b, c] : cad::triangles_of(ring)) {
-    area += 0.5 * twice_area({ring[a], ring[b], ring[c]}).norm();
-  }
-  EXPECT_NEAR(area, 8.0, 1e-12);
+  EXPECT_NEAR(area_in_triangles(ring), 8.0, 1e-12);
 }
 
 TEST(Obj, ManyCornersTakeTheirSquareAtMost) {
   // A spiral of 4000 corners, nearly none of them convex on its inner side.
   std::vector<Vec3> spiral;
-  for (int i = 0; i < 2000; ++i) {
+  const auto add = [&](double inner, int i) {
     const double turn = 0.02 * i;
-    spiral.emplace_back((1.0 + turn) * std::cos(turn), (1.0 + turn) * std::sin(turn), 0.0);
-  }
-  for (int i = 1999; i >= 0; --i) {
-    const double turn = 0.02 * i;
-    spiral.emplace_back((0.5 + turn) * std::cos(turn), (0.5 + turn) * std::sin(turn), 0.0);
-  }
+    spiral.emplace_back((inner + turn) * std::cos(turn), (inner + turn) * std::sin(turn), 0.0);
+  };
+  for (int i = 0; i < 2000; ++i) add(1.0, i);
+  for (int i = 1999; i >= 0; --i) add(0.5, i);
   double shoelace = 0.0;
   for (size_t i = 0; i < spiral.size(); ++i) {
     const Vec3 &a = spiral[i], &b = spiral[(i + 1) % spiral.size()];
     shoelace += 0.5 * (a.x() * b.y() - b.x() * a.y());
   }
-  double area = 0.0;
-  for (const auto& [a, b, c] : cad::triangles_of(spiral)) {
-    area += 0.5 * twice_area({spiral[a], spiral[b], spiral[c]}).norm();
-  }
-  EXPECT_NEAR(area, std::abs(shoelace), 1e-9 * std::abs(shoelace));
+  EXPECT_NEAR(area_in_triangles(spiral), std::abs(shoelace), 1e-9 * std::abs(shoelace));
 }
 
 // A square of 1 mm at 10 km, where single precision has steps of 1 mm: text keeps all digits.
@@ -239,12 +235,8 @@ TEST(Cad, TextFarFromTheOriginKeepsItsDigits) {
 // Facets of 5 cm, 540 m from the origin: steps of 6e-5 m turn them by about a milliradian.
 TEST(Cad, FacetsThatSinglePrecisionTurnsAreReported) {
   const auto far_stl = [](float at_m) {
-    std::string bytes = std::string(80, ' ') + word_bytes(1) + std::string(12, '\0');
-    for (const std::array<float, 3>& corner :
-         {std::array{at_m, 0.0f, 0.0f}, {at_m + 0.05f, 0.0f, 0.0f}, {at_m, 0.05f, 0.0f}}) {
-      bytes.append(reinterpret_cast<const char*>(corner.data()), sizeof corner);
-    }
-    return bytes + std::string(2, '\0');
+    return std::string(80, ' ') + word_bytes(1) +
+           facet_bytes({at_m, 0, 0, at_m + 0.05f, 0, 0, at_m, 0.05f, 0});
   };
   EXPECT_THAT(stl(far_stl(540.0f)).notices,
               Contains(HasSubstr("turns the facets by about 0.46 mrad")));
@@ -255,12 +247,8 @@ TEST(Cad, MaterialsAreOfTheExperimentOrReported) {
   const std::string text = "usemtl black\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   EXPECT_THAT(obj(text).notices,
               Contains(HasSubstr("'black': the file contains no optical properties")));
-  SettingsNode::Table table;
-  table["name"] = {std::string("black")};
-  table["absorptance"] = {1.0};
-  GltfOptions options;
-  options.materials = {Settings(std::make_shared<const SettingsNode>(SettingsNode{table}))};
-  const GltfModel model = obj(text, {1.0}, options);
+  const Settings black = test::settings_of({{"name", {"black"}}, {"absorptance", {1.0}}});
+  const GltfModel model = obj(text, {1.0}, {.materials = {black}});
   EXPECT_EQ(model.scene.surfaces[model.scene.instances[0].front_surface].absorbed[0], 1.0);
   for (const std::string& notice : model.notices) EXPECT_THAT(notice, Not(HasSubstr("optics")));
 }

@@ -10,8 +10,8 @@
 #include "scenes/cad/model.h"
 #include "scenes/gltf/coincident.h"
 #include "scenes/gltf/reader.h"
-#include "sources/lamps/kind.h"
 #include "tests/outside.h"
+#include "tests/settings.h"
 
 namespace photorque::coincidence {
 namespace {
@@ -28,17 +28,12 @@ Vec3 textbook_N(double diffuse, const Vec3& travel, const Vec3& normal) {
   return -pressure_Pa * travel.dot(normal) * (travel - 2.0 / 3.0 * diffuse * normal);
 }
 
-Beam sun(double scene_radius_m = 2.0) {
-  SettingsNode::Table keys;
-  keys["irradiance_W_m2"] = {irradiance_W_m2};
-  keys["angular_radius_deg"] = {0.0};
-  keys["direction"] = {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}, {}};
-  const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{std::move(keys), {}}));
-  for (const SourceKind& kind : all_source_kinds()) {
-    if (kind.name == "sun")
-      return kind.make(settings, {.scene_radius_m = scene_radius_m, .notice = {}})[0];
-  }
-  throw std::logic_error("no sun");
+Beam sun(double scene_radius_m) {
+  return test::make_beams("sun",
+                          {{"irradiance_W_m2", {irradiance_W_m2}},
+                           {"angular_radius_deg", {0.0}},
+                           {"direction", test::vector_node(0, 0, -1)}},
+                          {.scene_radius_m = scene_radius_m})[0];
 }
 
 GltfModel model_of(const std::string& obj) {
@@ -58,15 +53,21 @@ Scene black(Scene scene) {
   return scene;
 }
 
-WrenchSum sunlit(const Scene& scene, const Vec3& travel) {
+Vec3 sunlit_N(const Scene& scene, const Vec3& travel) {
   const TraceableScene traceable(scene);
   const Beam beam = sun(scene.radius_m());
   SunlitEffort effort;
   effort.scattered.rays = 1 << 14;
   const auto body = SunlitBody::make(traceable, std::span(&beam, 1), Vec3::Zero(), effort);
-  if (!body) return WrenchSum::Zero();  // too many triangles
+  if (!body) return Vec3::Zero();  // too many triangles
   const Quat body_from_lab = Quat::FromTwoVectors(-Vec3::UnitZ(), travel);
-  return body->wrench({body_from_lab.conjugate(), Vec3::Zero()}, INFINITY).total();
+  const SunlitWrench found = body->wrench({body_from_lab.conjugate(), Vec3::Zero()}, INFINITY);
+  return found.total().head<3>().matrix();
+}
+
+// The force of light along its `travel`, divided by its pressure.
+double pushed_m2(const Scene& scene, const Vec3& travel) {
+  return sunlit_N(scene, travel).dot(travel) / pressure_Pa;
 }
 
 // Area of the shadow across `travel`, by the centres of 1501² squares.
@@ -112,10 +113,9 @@ Estimate met_m2(const Scene& scene, const Vec3& travel) {
   const TraceableScene traceable(scene);
   const Beam beam = sun(scene.radius_m());
   const RigidTransform lab_from_body{Quat::FromTwoVectors(travel, -Vec3::UnitZ()), Vec3::Zero()};
-  TraceOptions options;
-  options.rays = 1 << 18;
   const Estimate absorbed_W =
-      trace(traceable, lab_from_body, std::span(&beam, 1), {}, options).power_balance.absorbed_W;
+      trace(traceable, lab_from_body, std::span(&beam, 1), {}, {.rays = 1 << 18})
+          .power_balance.absorbed_W;
   return {absorbed_W.value / irradiance_W_m2, absorbed_W.standard_error / irradiance_W_m2};
 }
 
@@ -157,7 +157,7 @@ TEST(CoincidentFaces, ReceiveTheLightOnce) {
     for (const Vec3& towards :
          {Vec3(0, 0, -1), Vec3(0, 0, 1), Vec3(0.5, 0.3, -0.6), Vec3(-0.2, 0.7, 0.5)}) {
       const Vec3 travel = towards.normalized();
-      const Vec3 force_N = sunlit(scene, travel).head<3>().matrix();
+      const Vec3 force_N = sunlit_N(scene, travel);
       const double area_m2 = silhouette_m2(scene, travel);
       EXPECT_NEAR(force_N.dot(travel) / pressure_Pa, area_m2, 4e-3) << what << towards;
       EXPECT_LT(force_N.cross(travel).norm(), 1e-4 * force_N.norm()) << what;
@@ -180,8 +180,7 @@ TEST(CoincidentFaces, AtASlightAngleReceiveTheLightOnce) {
         const Scene scene =
             black(model_of(unit_square + "o a\nf 1 2 3 4\n" + tilted.str() + "o b\n" + face).scene);
         for (const Vec3& travel : {Vec3(0, 0, -1), Vec3(0, 0, 1)}) {
-          const double force_N = sunlit(scene, travel).head<3>().matrix().dot(travel);
-          EXPECT_NEAR(force_N / pressure_Pa, 1.0, 3e-4) << angle_rad << " " << axis_m << face;
+          EXPECT_NEAR(pushed_m2(scene, travel), 1.0, 3e-4) << angle_rad << " " << axis_m << face;
         }
       }
     }
@@ -225,8 +224,7 @@ TEST(CoincidentFaces, ThatTransmitAreOneSheet) {
     for (const auto& [travel, through] :
          {std::pair(Vec3(0, 0, -1), one.front), std::pair(Vec3(0, 0, 1), one.back)}) {
       const double absorbed = 1.0 - std::pow(through, one.sheets);
-      const double force_N = sunlit(scene, travel).head<3>().matrix().dot(travel);
-      EXPECT_NEAR(force_N / pressure_Pa, absorbed, 1e-5) << one.what << travel.z();
+      EXPECT_NEAR(pushed_m2(scene, travel), absorbed, 1e-5) << one.what << travel.z();
       const Estimate met = met_m2(scene, travel);
       EXPECT_NEAR(met.value, absorbed, 3.0 * met.standard_error + 1e-4) << one.what << travel.z();
     }
@@ -244,8 +242,8 @@ void expect_sides(Scene scene, double front, double back) {
     const Vec3 down = towards.normalized(), up = -down;
     const Vec3 front_N = textbook_N(front, down, Vec3::UnitZ());
     const Vec3 back_N = textbook_N(back, up, -Vec3::UnitZ());
-    const Vec3 on_front_N = sunlit(scene, down).head<3>().matrix();
-    const Vec3 on_back_N = sunlit(scene, up).head<3>().matrix();
+    const Vec3 on_front_N = sunlit_N(scene, down);
+    const Vec3 on_back_N = sunlit_N(scene, up);
     EXPECT_LT((on_front_N - front_N).norm(), 1e-5 * front_N.norm());
     EXPECT_LT((on_back_N - back_N).norm(), 1e-5 * back_N.norm());
   }
@@ -353,7 +351,7 @@ TEST(CoincidentFaces, OfScaledAndMirroredInstancesReceiveTheLightOnce) {
   for (const Vec3& towards : {Vec3(0, 0, -1), Vec3(0.5, 0.3, 0.6)}) {
     const Vec3 travel = (plane * towards).normalized();
     const double area_m2 = silhouette_m2(scene, travel);
-    EXPECT_NEAR(sunlit(scene, travel).head<3>().matrix().dot(travel) / pressure_Pa, area_m2, 4e-3);
+    EXPECT_NEAR(pushed_m2(scene, travel), area_m2, 4e-3);
     const Estimate met = met_m2(scene, travel);
     EXPECT_NEAR(met.value, area_m2, 4.0 * met.standard_error + 4e-3);
   }
@@ -383,8 +381,7 @@ TEST(CoincidentFaces, AFoldedRadiatorDrawnFromBothSidesHasItsArea) {
   }
   const Scene scene = black(model_of(obj.str()).scene);
   for (const Vec3& travel : {Vec3(0, 0, -1), Vec3(0, 0, 1)}) {
-    const double force_N = sunlit(scene, travel).head<3>().matrix().dot(travel);
-    EXPECT_NEAR(force_N / pressure_Pa, 19.05 * 2.4, 1e-4 * 19.05 * 2.4) << travel.z();
+    EXPECT_NEAR(pushed_m2(scene, travel), 19.05 * 2.4, 1e-4 * 19.05 * 2.4) << travel.z();
     const Estimate met = met_m2(scene, travel);
     EXPECT_NEAR(met.value, 19.05 * 2.4, 4.0 * met.standard_error) << travel.z();
   }
@@ -407,8 +404,7 @@ TEST_P(Silhouettes, OfModelsOfThirdPartiesAreThoseOfARasteriser) {
     const Estimate rays_m2 = met_m2(scene, travel);
     EXPECT_NEAR(rays_m2.value, area_m2, 4.0 * rays_m2.standard_error + 2e-3 * area_m2) << travel;
     if (triangles > most_by_quadrature) continue;
-    const double pushed_m2 = sunlit(scene, travel).head<3>().matrix().dot(travel) / pressure_Pa;
-    EXPECT_NEAR(pushed_m2, area_m2, 2e-3 * area_m2) << travel;
+    EXPECT_NEAR(pushed_m2(scene, travel), area_m2, 2e-3 * area_m2) << travel;
   }
 }
 

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "raytrace/tracing/tracer.h"
-#include "sources/lamps/kind.h"
 #include "tests/raytrace/test_scenes.h"
+#include "tests/settings.h"
 
 namespace photorque {
 namespace {
@@ -14,26 +14,19 @@ namespace {
 // A Gaussian beam of 1/e² radius w on a centred square of side s: P erf(s/(√2 w))².
 TEST(GaussianBeam, EncircledPowerOnASquareMatchesClosedForm) {
   const double w = 0.1;
-  SettingsNode::Table keys;
-  keys["power_W"].value = 2.0;
-  keys["wavelength_nm"].value = 730.0;
-  keys["waist_radius_m"].value = w;
-  keys["position_m"].value = SettingsNode::Array{{0.0, {}}, {0.0, {}}, {1.0, {}}};
-  keys["direction"].value = SettingsNode::Array{{0.0, {}}, {0.0, {}}, {-1.0, {}}};
-  std::vector<Beam> beams;
-  for (const SourceKind& kind : all_source_kinds()) {
-    if (kind.name != "laser") continue;
-    beams = kind.make(Settings(std::make_shared<const SettingsNode>(SettingsNode{keys, {}})), {});
-  }
+  const std::vector<Beam> beams =
+      test::make_beams("laser", {{"power_W", {2.0}},
+                                 {"wavelength_nm", {730.0}},
+                                 {"waist_radius_m", {w}},
+                                 {"position_m", test::vector_node(0, 0, 1)},
+                                 {"direction", test::vector_node(0, 0, -1)}});
   ASSERT_EQ(beams.size(), 1u);
   for (const double side : {0.1, 0.2, 0.3}) {
-    Scene scene;
-    fixtures::add(scene, fixtures::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
-                  grey_surface("black", 0, 0), "square");
-    const TraceableScene traceable(std::move(scene));
-    TraceOptions options;
-    options.rays = 1 << 21;
-    const Estimate power = trace(traceable, {}, beams, {}, options).power_balance.absorbed_W;
+    const TraceableScene traceable(fixtures::scene_of_part(
+        fixtures::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
+        grey_surface("black", 0, 0), "square"));
+    const Estimate power =
+        trace(traceable, {}, beams, {}, {.rays = 1 << 21}).power_balance.absorbed_W;
     const double exact = 2.0 * std::pow(std::erf(side / (std::numbers::sqrt2 * w)), 2);
     EXPECT_LE(std::abs(power.value - exact), 3 * power.standard_error);
     EXPECT_LE(std::abs(power.value - exact), 1e-4 * 2.0);

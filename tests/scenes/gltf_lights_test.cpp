@@ -169,14 +169,10 @@ json profile_file(json light) {
 Vec3 mean_direction(const Beam& beam) {
   SampleBlock samples;
   RayBlock rays;
-  sobol_points({}, 0,
-               {samples.bits[0].data(), samples.bits[1].data(), samples.bits[2].data(),
-                samples.bits[3].data()});
+  sobol_points({}, 0, samples.columns());
   beam.emitter->emit(samples, rays);
   Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < ray_block; ++i) {
-    sum += Vec3(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]);
-  }
+  for (size_t i = 0; i < ray_block; ++i) sum += rays.direction_at(i);
   return beam.lab_from_emitter.direction(sum / ray_block);
 }
 

@@ -5,6 +5,7 @@
 #include "raytrace/surfaces/bsdf.h"
 #include "scenes/surfaces/settings.h"
 #include "tests/refusal.h"
+#include "tests/settings.h"
 
 namespace photorque {
 namespace {
@@ -14,32 +15,16 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const InputLocation written_at = {"experiment.toml", 7};
+using test::numbers_node;
 
-SettingsNode node_of(double number) {
-  return {number, written_at};
-}
-
-SettingsNode node_of(const std::string& text) {
-  return {text, written_at};
-}
-
-SettingsNode node_of(const std::vector<double>& numbers) {
-  SettingsNode::Array array;
-  for (const double number : numbers) array.push_back(node_of(number));
-  return {array, written_at};
-}
-
-Settings settings_of(const SettingsNode::Table& table) {
-  return Settings(std::make_shared<const SettingsNode>(SettingsNode{table, written_at}),
-                  "material[0]");
+Settings material_of(const SettingsNode::Table& table) {
+  return test::settings_of(table, "material[0]");
 }
 
 TEST(SurfaceSettings, OneFractionLeftOutIsTheRest) {
-  const OpticalSurface surface = read_surface(settings_of({{"absorptance", node_of(0.7)},
-                                                           {"specular", node_of(0.1)},
-                                                           {"transmittance", node_of(0.05)}}),
-                                              2, "paint");
+  const OpticalSurface surface = read_surface(
+      material_of({{"absorptance", {0.7}}, {"specular", {0.1}}, {"transmittance", {0.05}}}), 2,
+      "paint");
   EXPECT_EQ(surface.name, "paint");
   EXPECT_NEAR(surface.diffuse[0], 0.15, 1e-15);
   EXPECT_NEAR(surface.diffuse[1], 0.15, 1e-15);
@@ -49,25 +34,25 @@ TEST(SurfaceSettings, OneFractionLeftOutIsTheRest) {
 
 TEST(SurfaceSettings, BandsMayDiffer) {
   const OpticalSurface surface =
-      read_surface(settings_of({{"absorptance", node_of(std::vector<double>{0.9, 0.2})},
-                                {"specular", node_of(0.1)},
-                                {"transmittance", node_of(0.0)}}),
+      read_surface(material_of({{"absorptance", numbers_node({0.9, 0.2})},
+                                {"specular", {0.1}},
+                                {"transmittance", {0.0}}}),
                    2, "cell");
   EXPECT_NEAR(surface.diffuse[0], 0.0, 1e-15);
   EXPECT_NEAR(surface.diffuse[1], 0.7, 1e-15);
 }
 
 TEST(SurfaceSettings, SumsThatAreOneLeaveNothingForOthers) {
-  const OpticalSurface black = read_surface(settings_of({{"absorptance", node_of(1.0)}}), 1, "b");
+  const OpticalSurface black = read_surface(material_of({{"absorptance", {1.0}}}), 1, "b");
   EXPECT_EQ(black.absorbed[0], 1.0);
   EXPECT_EQ(black.specular[0] + black.diffuse[0] + black.transmitted[0], 0.0);
 }
 
 TEST(SurfaceSettings, SumsToRoundingWhenWrittenToNineDigits) {
-  const OpticalSurface surface = read_surface(settings_of({{"absorptance", node_of(0.333333333)},
-                                                           {"specular", node_of(0.333333333)},
-                                                           {"diffuse", node_of(0.333333333)},
-                                                           {"transmittance", node_of(0.0)}}),
+  const OpticalSurface surface = read_surface(material_of({{"absorptance", {0.333333333}},
+                                                           {"specular", {0.333333333}},
+                                                           {"diffuse", {0.333333333}},
+                                                           {"transmittance", {0.0}}}),
                                               1, "thirds");
   EXPECT_NEAR(surface.absorbed[0] + surface.specular[0] + surface.diffuse[0], 1.0,
               4 * std::numeric_limits<double>::epsilon());
@@ -75,84 +60,79 @@ TEST(SurfaceSettings, SumsToRoundingWhenWrittenToNineDigits) {
 
 TEST(SurfaceSettings, WrongFractionsAreRefused) {
   const auto error = [](const SettingsNode::Table& table, int bands = 1) {
-    return refusal_of([&] { read_surface(settings_of(table), bands, "x"); });
+    return refusal_of([&] { read_surface(material_of(table), bands, "x"); });
   };
   EXPECT_EQ(error({}),
-            "experiment.toml:7: material[0]: found no optical property, expected "
+            "test.toml:7: material[0]: found no optical property, expected "
             "absorptance, specular, diffuse, transmittance");
   EXPECT_THAT(
-      error({{"absorptance", node_of(0.5)}}),
+      error({{"absorptance", {0.5}}}),
       HasSubstr("found fractions that sum to 0.5 in band 0, expected a sum of 1, or all but "
                 "one of specular, diffuse, transmittance too"));
-  EXPECT_THAT(error({{"absorptance", node_of(0.5)},
-                     {"specular", node_of(0.2)},
-                     {"diffuse", node_of(0.2)},
-                     {"transmittance", node_of(0.2)}}),
+  EXPECT_THAT(error({{"absorptance", {0.5}},
+                     {"specular", {0.2}},
+                     {"diffuse", {0.2}},
+                     {"transmittance", {0.2}}}),
               HasSubstr("sum to 1.1 in band 0"));
-  EXPECT_THAT(error({{"absorptance", node_of(0.5)},
-                     {"specular", node_of(0.5 + 2e-9)},
-                     {"diffuse", node_of(0.0)}}),
+  EXPECT_THAT(error({{"absorptance", {0.5}}, {"specular", {0.5 + 2e-9}}, {"diffuse", {0.0}}}),
               HasSubstr("expected a sum of 1"));
-  EXPECT_THAT(error({{"absorptance", node_of(1.5)}}), HasSubstr("found 1.5, expected a number in"));
-  EXPECT_THAT(error({{"absorptance", node_of(std::vector<double>{1, 1, 1})}}, 2),
+  EXPECT_THAT(error({{"absorptance", {1.5}}}), HasSubstr("found 1.5, expected a number in"));
+  EXPECT_THAT(error({{"absorptance", numbers_node({1, 1, 1})}}, 2),
               HasSubstr("found an array of 3, expected one number, or one for each of 2 band(s)"));
-  EXPECT_THAT(error({{"absorptance", node_of(std::string("black"))}}), HasSubstr("\"black\""));
+  EXPECT_THAT(error({{"absorptance", {"black"}}}), HasSubstr("\"black\""));
 }
 
 TEST(SurfaceSettings, BackIsATableOfItsOwn) {
-  const SettingsNode back{SettingsNode::Table{{"specular", node_of(1.0)}}, written_at};
-  const Settings both = settings_of({{"absorptance", node_of(1.0)}, {"back", back}});
+  const SettingsNode back{SettingsNode::Table{{"specular", {1.0}}}};
+  const Settings both = material_of({{"absorptance", {1.0}}, {"back", back}});
   const SheetOptics sheet = read_sheet(both, 1, "cell");
   EXPECT_EQ(sheet.front.absorbed[0], 1.0);
   ASSERT_TRUE(sheet.back.has_value());
   EXPECT_EQ(sheet.back->specular[0], 1.0);
   EXPECT_NO_THROW(both.finish());
-  EXPECT_FALSE(read_sheet(settings_of({{"absorptance", node_of(1.0)}}), 1, "x").back);
+  EXPECT_FALSE(read_sheet(material_of({{"absorptance", {1.0}}}), 1, "x").back);
 }
 
 TEST(SurfaceSettings, RetroreflectanceIsAFifthFraction) {
-  const OpticalSurface sign = read_surface(
-      settings_of({{"retroreflectance", node_of(0.6)}, {"absorptance", node_of(0.4)}}), 1, "sign");
+  const OpticalSurface sign =
+      read_surface(material_of({{"retroreflectance", {0.6}}, {"absorptance", {0.4}}}), 1, "sign");
   ASSERT_TRUE(sign.bsdf);
   EXPECT_NEAR(sign.bsdf->retroreflected[0], 0.6, 1e-15);
   EXPECT_EQ(sign.specular[0] + sign.diffuse[0] + sign.transmitted[0], 0.0);
-  EXPECT_EQ(read_surface(settings_of({{"retroreflectance", node_of(1.0)}}), 1, "x").absorbed[0], 0);
+  EXPECT_EQ(read_surface(material_of({{"retroreflectance", {1.0}}}), 1, "x").absorbed[0], 0);
 }
 
 TEST(SurfaceSettings, PlainSurfacesHaveNoBsdf) {
-  EXPECT_FALSE(read_surface(settings_of({{"absorptance", node_of(1.0)}}), 1, "b").bsdf);
+  EXPECT_FALSE(read_surface(material_of({{"absorptance", {1.0}}}), 1, "b").bsdf);
   EXPECT_FALSE(
-      read_sheet(settings_of({{"absorptance", node_of(1.0)}, {"reemitted", node_of(0.0)}}), 1, "b")
-          .front.bsdf);
+      read_sheet(material_of({{"absorptance", {1.0}}, {"reemitted", {0.0}}}), 1, "b").front.bsdf);
 }
 
 TEST(SurfaceSettings, GlassRoughnessAndSlopesReachTheSurface) {
   const auto read = [](const SettingsNode::Table& table) {
-    const Settings settings = settings_of(table);
+    const Settings settings = material_of(table);
     const OpticalSurface surface = read_surface(settings, 1, "x");
     settings.finish();
     return surface;
   };
-  const OpticalSurface cell =
-      read({{"absorptance", node_of(1.0)}, {"refractive_index", node_of(1.5)}});
+  const OpticalSurface cell = read({{"absorptance", {1.0}}, {"refractive_index", {1.5}}});
   ASSERT_TRUE(cell.bsdf && cell.bsdf->law);
   EXPECT_NEAR(cell.absorbed[0], 0.96, 1e-14);  // 4 % by Fresnel
-  const OpticalSurface satin = read(
-      {{"specular", node_of(0.8)}, {"absorptance", node_of(0.2)}, {"roughness", node_of(0.5)}});
+  const OpticalSurface satin =
+      read({{"specular", {0.8}}, {"absorptance", {0.2}}, {"roughness", {0.5}}});
   ASSERT_TRUE(satin.bsdf && satin.bsdf->specular);
   EXPECT_EQ(satin.specular[0], 0.8);
   // A lobe like that of alpha = 0.25, which is wider than that of a wavy mirror.
-  const OpticalSurface wavy =
-      read({{"specular", node_of(1.0)}, {"slope_error_mrad", node_of(2.0)}});
+  const OpticalSurface wavy = read({{"specular", {1.0}}, {"slope_error_mrad", {2.0}}});
   EXPECT_LT(satin.bsdf->specular->mean_direction(1.0).z(), 0.9);
   EXPECT_NEAR(1 - wavy.bsdf->specular->mean_direction(1.0).z(), 4 * 4e-6, 1e-7);
 }
 
 TEST(SurfaceSettings, SlopeErrorsHaveAShapeAndTwoSizes) {
-  const SettingsNode two = node_of(std::vector{6.0, 2.0});
-  const SettingsNode axis = node_of(std::vector{0.0, 2.0, 0.0});
-  const SettingsNode pillbox{std::string("pillbox"), written_at};
-  const Settings settings = settings_of({{"specular", node_of(1.0)},
+  const SettingsNode two = numbers_node({6.0, 2.0});
+  const SettingsNode axis = numbers_node({0.0, 2.0, 0.0});
+  const SettingsNode pillbox{"pillbox"};
+  const Settings settings = material_of({{"specular", {1.0}},
                                          {"slope_error_mrad", two},
                                          {"slope_error_shape", pillbox},
                                          {"slope_error_axis", axis}});
@@ -163,25 +143,25 @@ TEST(SurfaceSettings, SlopeErrorsHaveAShapeAndTwoSizes) {
   // 1 − <o_z> = 2 (<s₁²> + <s₂²>), of an even ellipse a quarter of the squares of its semi-axes.
   EXPECT_NEAR(1 - surface.bsdf->specular->mean_direction(1.0).z(), 0.5 * 40e-6, 1e-8);
   const auto error = [](SettingsNode::Table table) {
-    table.insert({"specular", node_of(1.0)});
-    return refusal_of([&] { read_sheet(settings_of(table), 1, "x"); });
+    table.insert({"specular", {1.0}});
+    return refusal_of([&] { read_sheet(material_of(table), 1, "x"); });
   };
   EXPECT_THAT(error({{"slope_error_mrad", two}}), HasSubstr("slope_error_axis beside"));
-  const SettingsNode three = node_of(std::vector{6.0, 2.0, 1.0});
+  const SettingsNode three = numbers_node({6.0, 2.0, 1.0});
   EXPECT_THAT(error({{"slope_error_mrad", three}, {"slope_error_axis", axis}}),
               HasSubstr("found an array of 3, expected one number, or two"));
-  const SettingsNode nowhere = node_of(std::vector{0.0, 0.0, 0.0});
+  const SettingsNode nowhere = numbers_node({0.0, 0.0, 0.0});
   EXPECT_THAT(error({{"slope_error_mrad", two}, {"slope_error_axis", nowhere}}),
               HasSubstr("found a vector without length"));
 }
 
 TEST(SurfaceSettings, HeatIsOfTheWholeSheet) {
-  const SettingsNode back{SettingsNode::Table{{"absorptance", node_of(1.0)}}, written_at};
-  const Settings settings = settings_of({{"absorptance", node_of(1.0)},
+  const SettingsNode back{SettingsNode::Table{{"absorptance", {1.0}}}};
+  const Settings settings = material_of({{"absorptance", {1.0}},
                                          {"back", back},
-                                         {"reemitted", node_of(0.9)},
-                                         {"emissivity_front", node_of(0.8)},
-                                         {"emissivity_back", node_of(0.2)}});
+                                         {"reemitted", {0.9}},
+                                         {"emissivity_front", {0.8}},
+                                         {"emissivity_back", {0.2}}});
   const SheetOptics sheet = read_sheet(settings, 1, "radiator");
   settings.finish();
   for (const OpticalSurface* side : {&sheet.front, &*sheet.back}) {
@@ -194,33 +174,30 @@ TEST(SurfaceSettings, HeatIsOfTheWholeSheet) {
 
 TEST(SurfaceSettings, BsdfsThatMakeNoSenseAreRefused) {
   const auto error = [](SettingsNode::Table table) {
-    return refusal_of([&] { read_sheet(settings_of(table), 1, "x"); });
+    return refusal_of([&] { read_sheet(material_of(table), 1, "x"); });
   };
-  const SettingsNode half = node_of(0.5);
-  EXPECT_EQ(error({{"absorptance", node_of(1.0)}, {"refractive_index", node_of(0.5)}}),
-            "experiment.toml:7: material[0].refractive_index: found 0.5, expected a number in "
+  const SettingsNode half = {0.5};
+  EXPECT_EQ(error({{"absorptance", {1.0}}, {"refractive_index", {0.5}}}),
+            "test.toml:7: material[0].refractive_index: found 0.5, expected a number in "
             "[1, 10]");
   EXPECT_THAT(
-      error({{"diffuse", half}, {"specular", half}, {"refractive_index", node_of(1.5)}}),
+      error({{"diffuse", half}, {"specular", half}, {"refractive_index", {1.5}}}),
       HasSubstr("found more than one of specular, diffuse, transmittance, expected at most"));
-  EXPECT_THAT(
-      error({{"specular", node_of(1.0)}, {"refractive_index", node_of(1.5)}, {"roughness", half}}),
-      HasSubstr("material[0].roughness: found specular or transmittance behind glass"));
-  EXPECT_THAT(error({{"diffuse", node_of(1.0)}, {"roughness", half}}),
+  EXPECT_THAT(error({{"specular", {1.0}}, {"refractive_index", {1.5}}, {"roughness", half}}),
+              HasSubstr("material[0].roughness: found specular or transmittance behind glass"));
+  EXPECT_THAT(error({{"diffuse", {1.0}}, {"roughness", half}}),
               HasSubstr("found no specular fraction"));
-  EXPECT_THAT(error({{"specular", node_of(1.0)}, {"roughness", node_of(0.0)}}),
+  EXPECT_THAT(error({{"specular", {1.0}}, {"roughness", {0.0}}}),
               HasSubstr("material[0].roughness: found 0, expected a number in (0, 1]"));
+  EXPECT_THAT(error({{"specular", {1.0}}, {"roughness", half}, {"slope_error_mrad", {1.0}}}),
+              HasSubstr("expected one of the two"));
   EXPECT_THAT(
-      error({{"specular", node_of(1.0)}, {"roughness", half}, {"slope_error_mrad", node_of(1.0)}}),
-      HasSubstr("expected one of the two"));
-  EXPECT_THAT(
-      error(
-          {{"retroreflectance", half}, {"absorptance", half}, {"refractive_index", node_of(1.5)}}),
+      error({{"retroreflectance", half}, {"absorptance", half}, {"refractive_index", {1.5}}}),
       HasSubstr("found glass in front too"));
-  EXPECT_THAT(error({{"absorptance", node_of(1.0)},
-                     {"reemitted", node_of(1.0)},
-                     {"emissivity_front", node_of(0.0)},
-                     {"emissivity_back", node_of(0.0)}}),
+  EXPECT_THAT(error({{"absorptance", {1.0}},
+                     {"reemitted", {1.0}},
+                     {"emissivity_front", {0.0}},
+                     {"emissivity_back", {0.0}}}),
               HasSubstr("found 0 on both sides"));
 }
 
@@ -268,8 +245,7 @@ TEST(GltfOptics, UnknownKeysInExtrasSuggestTheKnown) {
 TEST(GltfOptics, ExperimentWinsOverExtras) {
   TestModel model =
       painted_model({{"name", "cell"}, {"extras", {{"photorque", {{"absorptance", 1}}}}}});
-  const Settings material =
-      settings_of({{"name", node_of(std::string("cell"))}, {"diffuse", node_of(1.0)}});
+  const Settings material = material_of({{"name", {"cell"}}, {"diffuse", {1.0}}});
   const GltfModel read = model.read({.materials = {material}});
   EXPECT_EQ(read.scene.surfaces.at(0).diffuse[0], 1.0);
   EXPECT_EQ(read.materials.at(0).origin, OpticsOrigin::experiment);
@@ -279,10 +255,10 @@ TEST(GltfOptics, ExperimentWinsOverExtras) {
 TEST(GltfOptics, ExperimentMustNameAMaterialOnce) {
   const TestModel model = painted_model({{"name", "solar_cell"}});
   const auto material = [](const std::string& name) {
-    return settings_of({{"name", node_of(name)}, {"diffuse", node_of(1.0)}});
+    return material_of({{"name", {name}}, {"diffuse", {1.0}}});
   };
   EXPECT_EQ(refusal_of([&] { model.read({.materials = {material("solarcell")}}); }),
-            "experiment.toml:7: material[0].name: found \"solarcell\", expected a material of "
+            "test.toml:7: material[0].name: found \"solarcell\", expected a material of "
             "model.gltf: perhaps \"solar_cell\"");
   EXPECT_THAT(refusal_of([&] {
                 model.read({.materials = {material("solar_cell"), material("solar_cell")}});

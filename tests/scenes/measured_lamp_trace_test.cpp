@@ -10,9 +10,9 @@
 #include "core/provenance.h"
 #include "raytrace/tracing/tracer.h"
 #include "scenes/experiment/experiment.h"
-#include "sources/lamps/kind.h"
 #include "sources/photometry/file.h"
 #include "tests/raytrace/test_scenes.h"
+#include "tests/settings.h"
 #include "tests/sources/ies_writer.h"
 
 namespace photorque {
@@ -27,21 +27,13 @@ double lambert_on_square(double a_over_z) {
 }
 
 std::vector<Beam> lamp_over_origin(const std::filesystem::path& folder) {
-  SettingsNode::Table keys;
-  keys["file"].value = "lambert.ies";
-  keys["power_W"].value = 2.0;
-  keys["wavelength_nm"].value = 730.0;
-  keys["position_m"].value = SettingsNode::Array{{0.0, {}}, {0.0, {}}, {1.0, {}}};
-  keys["direction"].value = SettingsNode::Array{{0.0, {}}, {0.0, {}}, {-1.0, {}}};
-  SourceContext context;
-  context.folder = folder;
-  for (const SourceKind& kind : all_source_kinds()) {
-    if (kind.name == "ies") {
-      return kind.make(Settings(std::make_shared<const SettingsNode>(SettingsNode{keys, {}})),
-                       context);
-    }
-  }
-  return {};
+  return test::make_beams("ies",
+                          {{"file", {"lambert.ies"}},
+                           {"power_W", {2.0}},
+                           {"wavelength_nm", {730.0}},
+                           {"position_m", test::vector_node(0, 0, 1)},
+                           {"direction", test::vector_node(0, 0, -1)}},
+                          {.folder = folder});
 }
 
 // Lambert's law in steps of one degree, written as a file.
@@ -79,14 +71,11 @@ TEST(IesLamp, PowerOnASquareMatchesClosedForm) {
   const std::vector<Beam> beams = lamp_over_origin(lambert_file("ies_on_a_square").parent_path());
   ASSERT_EQ(beams.size(), 1u);
   for (const double half : {0.1, 0.5, 2.0}) {
-    Scene scene;
-    fixtures::add(scene,
-                  fixtures::rectangle(Vec3::Zero(), Vec3(2 * half, 0, 0), Vec3(0, 2 * half, 0)),
-                  grey_surface("black", 0, 0), "square");
-    const TraceableScene traceable(std::move(scene));
-    TraceOptions options;
-    options.rays = 1 << 21;
-    const Estimate power = trace(traceable, {}, beams, {}, options).power_balance.absorbed_W;
+    const TraceableScene traceable(fixtures::scene_of_part(
+        fixtures::rectangle(Vec3::Zero(), Vec3(2 * half, 0, 0), Vec3(0, 2 * half, 0)),
+        grey_surface("black", 0, 0), "square"));
+    const Estimate power =
+        trace(traceable, {}, beams, {}, {.rays = 1 << 21}).power_balance.absorbed_W;
     const double exact = 2.0 * lambert_on_square(half);
     EXPECT_LE(std::abs(power.value - exact), 4 * power.standard_error) << half;
     EXPECT_LE(std::abs(power.value - exact), 2e-4) << half;

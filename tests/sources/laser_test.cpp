@@ -62,8 +62,7 @@ TEST(Laser, DivergenceIsTheFarFieldHalfAngleAtOneOverESquared) {
 
 TEST(Laser, NoticesABeamThatDiffractionForbids) {
   std::vector<std::string> notices;
-  SourceContext context;
-  context.notice = [&](const std::string& line) { notices.push_back(line); };
+  const SourceContext context{.notice = [&](const std::string& line) { notices.push_back(line); }};
   make_beams("laser", laser(1e-3), context);
   make_beams("laser", changed(laser(1e-3), {{"divergence_half_angle_mrad", {0.21}}}), context);
   EXPECT_TRUE(notices.empty());  // λ/(π w0) = 0.2015 mrad

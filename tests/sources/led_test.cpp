@@ -1,6 +1,7 @@
 #include "core/constants.h"
 #include "sampling.h"
 #include "sources/lamps/disc.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -21,13 +22,9 @@ SettingsNode::Table led() {
 }
 
 void expect_error(const std::string& kind, SettingsNode::Table table, const std::string& words) {
-  try {
-    make_beams(kind, std::move(table));
-    FAIL() << "no error that says: " << words;
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr(words));
-    EXPECT_THAT(error.what(), testing::HasSubstr("test.toml:7"));
-  }
+  const std::string message = refusal_of([&] { make_beams(kind, std::move(table)); });
+  EXPECT_THAT(message, testing::HasSubstr(words));
+  EXPECT_THAT(message, testing::HasSubstr("test.toml:7"));
 }
 
 TEST(Led, StandsWhereItIsPutAndLooksWhereItIsAimed) {

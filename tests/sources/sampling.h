@@ -1,4 +1,4 @@
-// Shared by the tests of sources: settings made by hand, and rays from Sobol points.
+// Shared by the tests of sources: keys that differ from an example, and rays from Sobol points.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +11,11 @@
 #include "core/constants.h"
 #include "core/files.h"
 #include "core/numerics/random.h"
-#include "core/settings/settings.h"
 #include "raytrace/emitter.h"
-#include "sources/lamps/kind.h"
 #include "sources/photometry/ray_set.h"
 #include "sources/profiles/tabulated_intensity.h"
 #include "tests/outside.h"
+#include "tests/settings.h"
 
 namespace photorque {
 
@@ -44,47 +43,13 @@ inline Vec3 table_direction(Pole pole, double polar_rad, double azimuth_rad) {
   return {across, -up, along};
 }
 
-inline SettingsNode vector_node(double x, double y, double z) {
-  return {SettingsNode::Array{{x}, {y}, {z}}, {}};
-}
-
-inline void set_location(SettingsNode& node, const InputLocation& where) {
-  node.where = where;
-  if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
-    for (auto& [key, inner] : *table) set_location(inner, where);
-  } else if (auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (SettingsNode& inner : *array) set_location(inner, where);
-  }
-}
-
-// As if read from line 7 of test.toml.
-inline Settings settings_of(SettingsNode::Table table) {
-  SettingsNode root{std::move(table)};
-  set_location(root, {"test.toml", 7});
-  return Settings(std::make_shared<SettingsNode>(std::move(root)), "source[0]");
-}
-
-inline SourceKind kind_called(const std::string& name) {
-  for (SourceKind& kind : all_source_kinds()) {
-    if (kind.name == name) return kind;
-  }
-  throw std::logic_error("no source kind " + name);
-}
-
-// The keys of the kind's example with some replaced or added and some left out.
+// The keys of the kind's example with some replaced or added and
+// some left out.
 inline SettingsNode::Table changed(SettingsNode::Table table, SettingsNode::Table replacements,
                                    std::initializer_list<std::string> without = {}) {
   for (const std::string& key : without) table.erase(key);
   for (auto& [key, node] : replacements) table.insert_or_assign(key, std::move(node));
   return table;
-}
-
-inline std::vector<Beam> make_beams(const std::string& kind, SettingsNode::Table table,
-                                    const SourceContext& context = {}) {
-  const Settings settings = settings_of(std::move(table));
-  std::vector<Beam> beams = kind_called(kind).make(settings, context);
-  settings.finish();
-  return beams;
 }
 
 struct Ray {
@@ -99,13 +64,10 @@ inline std::vector<Ray> rays_of(const Emitter& emitter, uint32_t count, uint64_t
   std::vector<Ray> rays;
   rays.reserve(count);
   for (uint32_t first = 0; first < count; first += ray_block) {
-    sobol_points({seed, 0, 0}, first,
-                 {samples->bits[0].data(), samples->bits[1].data(), samples->bits[2].data(),
-                  samples->bits[3].data()});
+    sobol_points({seed, 0, 0}, first, samples->columns());
     emitter.emit(*samples, *block);
-    for (int i = 0; i < ray_block; ++i) {
-      rays.push_back({{block->origin_m[0][i], block->origin_m[1][i], block->origin_m[2][i]},
-                      {block->direction[0][i], block->direction[1][i], block->direction[2][i]}});
+    for (size_t i = 0; i < ray_block; ++i) {
+      rays.push_back({block->origin_at_m(i), block->direction_at(i)});
     }
   }
   return rays;

@@ -12,13 +12,11 @@ using test::vector_node;
 constexpr double scene_radius_m = 0.5;
 
 Beam sun(double angular_radius_deg, double irradiance_W_m2 = 1000.0) {
-  SourceContext context;
-  context.scene_radius_m = scene_radius_m;
   return make_beams("sun",
                     {{"direction", vector_node(0.3, 0.1, -1.0)},
                      {"irradiance_W_m2", {irradiance_W_m2}},
                      {"angular_radius_deg", {angular_radius_deg}}},
-                    context)
+                    {.scene_radius_m = scene_radius_m})
       .at(0);
 }
 
@@ -135,14 +133,12 @@ TEST(Sun, CollimatedRaysAreParallel) {
 }
 
 Beam darkened_sun(double angular_radius_deg, double u1, double u2) {
-  SourceContext context;
-  context.scene_radius_m = scene_radius_m;
   return make_beams("sun",
                     {{"direction", vector_node(0, 0, -1)},
                      {"irradiance_W_m2", {1000.0}},
                      {"angular_radius_deg", {angular_radius_deg}},
                      {"limb_darkening", {SettingsNode::Array{{u1}, {u2}}}}},
-                    context)
+                    {.scene_radius_m = scene_radius_m})
       .at(0);
 }
 
@@ -211,9 +207,7 @@ TEST(Sun, ReportsTheMistake) {
   EXPECT_THROW(make_beams("sun", changed(table, {{"irradiance_W_m2", {-1.0}}})), InputError);
   EXPECT_THROW(make_beams("sun", changed(table, {{"angular_radius_deg", {60.0}}})), InputError);
   EXPECT_THROW(make_beams("sun", changed(table, {{"temperature_K", {0.0}}})), InputError);
-  SourceContext empty;
-  empty.scene_radius_m = 0.0;
-  EXPECT_THROW(make_beams("sun", table, empty), InputError);
+  EXPECT_THROW(make_beams("sun", table, {.scene_radius_m = 0.0}), InputError);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "core/errors.h"
 #include "sources/photometry/file.h"
+#include "tests/refusal.h"
 #include "tests/sources/ies_writer.h"
 
 namespace photorque {
@@ -52,14 +53,9 @@ void expect_same_table(const PhotometricFile& a, const PhotometricFile& b) {
 }
 
 void expect_refused_at(const std::string& text, const std::string& words, int line = 0) {
-  try {
-    read_photometric(text, "lamp.xml");
-    ADD_FAILURE() << "accepted, instead of: " << words;
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr(words));
-    const std::string place = line > 0 ? "lamp.xml:" + std::to_string(line) : "lamp.xml:";
-    EXPECT_THAT(error.what(), testing::HasSubstr(place));
-  }
+  const std::string message = refusal_of([&] { read_photometric(text, "lamp.xml"); });
+  EXPECT_THAT(message, testing::HasSubstr(words));
+  EXPECT_THAT(message, testing::HasSubstr("lamp.xml:" + (line > 0 ? std::to_string(line) : "")));
 }
 
 TEST(Tm33File, IsTheSameLampAsInLm63) {

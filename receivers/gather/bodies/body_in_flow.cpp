@@ -12,13 +12,12 @@ class BodyInFlow::Direction {
   Direction(const BodyInFlow& body, const Vec3& travel)
       : body_(body),
         travel_(travel),
-        least_m2_(least_piece * body.facets_.area_m2()),
-        grid_(outlines(), travel,
-              {scene_centre_m(body.scene_), 0.5 * scene_diameter_m(body.scene_)}) {}
+        least_m2_(least_piece * body.shape_.facets.area_m2()),
+        grid_(body.scene_, body.shape_.outlines, travel) {}
 
   Result run() {
-    for (const Facet& facet : body_.facets_.all()) {
-      const std::optional<bool> inward = body_.facets_.inward(facet.instance);
+    for (const Facet& facet : body_.shape_.facets.all()) {
+      const std::optional<bool> inward = body_.shape_.facets.inward(facet.instance);
       for (const bool front : {false, true}) {
         if (inward != front) add_side({&facet, front});
       }
@@ -32,12 +31,6 @@ class BodyInFlow::Direction {
   }
 
  private:
-  std::vector<Line> outlines() const {
-    std::vector<Line> lines;
-    body_.outlines_.in_light(travel_, lines);
-    return lines;
-  }
-
   void add_side(const FacetSide& side) {
     const Facet& facet = *side.facet;
     const Vec3 normal = side.normal();
@@ -48,7 +41,7 @@ class BodyInFlow::Direction {
       return wrench_of(force_m2, at_m - body_.about_m_);
     };
     const Vec3& middle_m = facet.ball.centre_m;
-    if (facet.free[side.front ? 1 : 0]) {
+    if (side.is_free()) {
       found_.per_pressure += wrench_at(middle_m);
       return;
     }
@@ -67,8 +60,8 @@ class BodyInFlow::Direction {
   void cut(const Facet& facet, const Vec3& normal) {
     Screen screen(facet);
     const double rounding_m = plane_rounding * scene_diameter_m(body_.scene_);
-    const auto number = static_cast<size_t>(&facet - body_.facets_.all().data());
-    screen.add(body_.cuts_[number], normal, travel_, rounding_m);
+    const size_t number = body_.shape_.facets.number_of(facet);
+    screen.add(body_.shape_.cuts[number], normal, travel_, rounding_m);
     grid_.over(facet.corner_m, lines_);
     screen.add(lines_, normal, travel_, rounding_m);
     parts_.clear();
@@ -77,9 +70,8 @@ class BodyInFlow::Direction {
 
   // Queues the wrench of molecules that travel along `travel`; it counts if nothing blocks them.
   void test(const Vec3& at_m, const Vec3& normal, const Vec3& travel, const WrenchSum& wrench) {
-    ShadowRay ray = probe(body_.scene_, at_m, normal, 4.0 * scene_diameter_m(body_.scene_));
-    for (int k = 0; k < 3; ++k) ray.direction[k] = static_cast<float>(-travel[k]);
-    rays_.push_back(ray);
+    rays_.push_back(
+        probe(body_.scene_, at_m, normal, -travel, 4.0 * scene_diameter_m(body_.scene_)));
     shaded_.push_back(wrench);
   }
 
@@ -100,9 +92,7 @@ BodyInFlow::BodyInFlow(const TraceableScene& scene, double speed_ratio, std::vec
       speed_ratio_(speed_ratio),
       walls_(std::move(walls)),
       about_m_(about_m),
-      facets_(scene.scene()),
-      outlines_(facets_),
-      cuts_(all_cuts(facets_, plane_rounding * scene_diameter_m(scene))) {}
+      shape_(scene) {}
 
 BodyInFlow::Result BodyInFlow::wrench(const Vec3& travel) const {
   return Direction(*this, travel).run();

@@ -38,9 +38,7 @@ class BodyInFlow {
   double speed_ratio_;
   std::vector<GasWall> walls_;
   Vec3 about_m_;
-  Facets facets_;
-  Outlines outlines_;
-  std::vector<std::vector<Line>> cuts_;  // by facet
+  BodyShape shape_;
 };
 
 }  // namespace photorque

@@ -17,10 +17,7 @@ Facet facet_of(const SurfaceFace& face) {
   facet.normal = face.area_body_m2 / facet.area_m2;
   facet.instance = face.instance;
   facet.triangle = face.triangle;
-  facet.ball = {(face.corner_body_m[0] + face.corner_body_m[1] + face.corner_body_m[2]) / 3.0, 0.0};
-  for (const Vec3& corner : facet.corner_m) {
-    facet.ball.radius_m = std::max(facet.ball.radius_m, (corner - facet.ball.centre_m).norm());
-  }
+  facet.ball = ball_around(facet.corner_m);
   return facet;
 }
 
@@ -38,6 +35,14 @@ Ball ball_about(std::span<const Facet> facets) {
 }
 
 }  // namespace
+
+Ball ball_around(const TriangleCorners& corners_m) {
+  Ball ball{(corners_m[0] + corners_m[1] + corners_m[2]) / 3.0, 0.0};
+  for (const Vec3& corner : corners_m) {
+    ball.radius_m = std::max(ball.radius_m, (corner - ball.centre_m).norm());
+  }
+  return ball;
+}
 
 Facets::Facets(const Scene& scene) {
   for (uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
@@ -103,49 +108,18 @@ std::vector<uint32_t> places_of(std::span<const SurfaceFace> faces) {
   return welded(corners_m);
 }
 
-// An edge with its direction: from the lower to the higher index, or back.
-struct DirectedEdge {
-  uint32_t low, high;
-  bool forward;
-};
-
-std::vector<DirectedEdge> edges_of(const std::vector<uint32_t>& places) {
-  std::vector<DirectedEdge> edges;
-  for (size_t first = 0; first < places.size(); first += 3) {
-    const auto p = std::span(places).subspan(first, 3);
-    // Two corners are identical: the face has no area, and its neighbours share the remaining edge.
-    if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;
-    for (size_t k = 0; k < 3; ++k) {
-      const uint32_t a = p[k], b = p[(k + 1) % 3];
-      edges.push_back({std::min(a, b), std::max(a, b), a < b});
-    }
-  }
-  std::ranges::sort(edges, [](const DirectedEdge& a, const DirectedEdge& b) {
-    return std::tie(a.low, a.high, a.forward) < std::tie(b.low, b.high, b.forward);
-  });
-  return edges;
-}
-
-// Whether every edge belongs to exactly two triangles that traverse it in opposite directions.
-bool is_without_gap(const std::vector<DirectedEdge>& edges) {
-  if (edges.empty() || edges.size() % 2 != 0) return false;
-  for (size_t i = 0; i < edges.size(); i += 2) {
-    const DirectedEdge &a = edges[i], &b = edges[i + 1];
-    const bool is_pair = a.low == b.low && a.high == b.high && a.forward != b.forward;
-    const bool is_more = i > 0 && edges[i - 1].low == a.low && edges[i - 1].high == a.high;
-    if (!is_pair || is_more) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 std::optional<bool> fronts_look_inwards(std::span<const SurfaceFace> faces) {
   const std::vector<uint32_t> places = places_of(faces);
-  const std::vector<DirectedEdge> edges = edges_of(places);
-  if (!is_without_gap(edges)) return std::nullopt;
+  if (!edges_pair_up(places)) return std::nullopt;
   DisjointSets bodies(places.size());
-  for (const DirectedEdge& edge : edges) bodies.join(edge.low, edge.high);
+  for (size_t f = 0; f < places.size(); f += 3) {
+    const uint32_t a = places[f], b = places[f + 1], c = places[f + 2];
+    if (a == b || b == c || c == a) continue;  // without area
+    bodies.join(a, b);
+    bodies.join(b, c);
+  }
   struct Size {
     double volume_m3 = 0.0, area_m2 = 0.0, reach_m = 0.0;
   };

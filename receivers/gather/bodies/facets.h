@@ -13,12 +13,15 @@
 
 namespace photorque {
 
+// The ball about the centroid that contains the triangle.
+Ball ball_around(const TriangleCorners& corners_m);
+
 // A triangle of positive area in the body frame.
 struct Facet {
   TriangleCorners corner_m;
   Vec3 normal;  // of the front
   double area_m2 = 0.0;
-  Ball ball;  // about its centroid
+  Ball ball;  // ball_around() the corners
   uint32_t instance = 0;
   uint32_t triangle = 0;
   // Whether no part of the scene lies above the back [0] or the front [1], so that nothing can
@@ -29,6 +32,16 @@ struct Facet {
   Vec3 at(const Vec2& uv) const {
     return corner_m[0] + uv[0] * (corner_m[1] - corner_m[0]) + uv[1] * (corner_m[2] - corner_m[0]);
   }
+};
+
+// One side of a facet.
+struct FacetSide {
+  const Facet* facet;
+  bool front;
+
+  Vec3 normal() const { return front ? facet->normal : Vec3(-facet->normal); }
+  // Whether nothing can shade this side.
+  bool is_free() const { return facet->free[front ? 1 : 0]; }
 };
 
 // All facets of a scene, instance by instance.
@@ -48,6 +61,10 @@ class Facets {
   // Ball that contains an instance.
   const Ball& ball_of(uint32_t instance) const { return balls_[instance]; }
   size_t count() const { return facets_.size(); }
+  // Index in all() of one of its elements.
+  size_t number_of(const Facet& facet) const { return static_cast<size_t>(&facet - &facets_[0]); }
+  // Side 2 · facet + front.
+  FacetSide side(size_t number) const { return {&facets_[number / 2], number % 2 == 1}; }
   double area_m2() const;
   // Result of fronts_look_inwards() for an instance.
   std::optional<bool> inward(uint32_t instance) const { return inward_[instance]; }

@@ -40,13 +40,7 @@ class FacetQuadrature {
     TriangleCorners corner_m;
     double area_m2;
 
-    Ball ball() const {
-      Ball ball{(corner_m[0] + corner_m[1] + corner_m[2]) / 3.0, 0.0};
-      for (const Vec3& c : corner_m) {
-        ball.radius_m = std::max(ball.radius_m, (c - ball.centre_m).norm());
-      }
-      return ball;
-    }
+    Ball ball() const { return ball_around(corner_m); }
     std::array<Piece, 4> quarters() const {
       const auto& [a, b, c] = corner_m;
       const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);

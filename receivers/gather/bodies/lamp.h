@@ -43,14 +43,6 @@ class BodyLight {
   std::vector<std::unique_ptr<Slab>> slabs_;
 };
 
-// One side of a facet.
-struct FacetSide {
-  const Facet* facet;
-  bool front;
-
-  Vec3 normal() const { return front ? facet->normal : Vec3(-facet->normal); }
-};
-
 // Upper limit of the light of a beam on one side.
 enum class Exposure {
   none,

@@ -19,33 +19,17 @@ BandValues part_of(const BandValues& power_W, const BandValues& fraction) {
   return part;
 }
 
-Ray narrow(const OnwardRay& wide, uint32_t index, const Vec3& centre_m) {
-  Ray ray{};
-  for (int k = 0; k < 3; ++k) {
-    ray.origin_m[k] = static_cast<float>(wide.origin_m[k] - centre_m[k]);
-    ray.direction[k] = static_cast<float>(wide.direction[k]);
-  }
-  ray.sample = index;
-  return ray;
-}
-
 }  // namespace
 
 ShadowRay probe(const TraceableScene& scene, const Vec3& at_m, const Vec3& normal,
-                double length_m) {
-  const Vec3 from = at_m - scene_centre_m(scene) + shadow_ray_offset_m(scene) * normal;
-  ShadowRay ray{};
-  for (int k = 0; k < 3; ++k) {
-    ray.origin_m[k] = static_cast<float>(from[k]);
-    ray.direction[k] = static_cast<float>(normal[k]);
-  }
-  ray.length_m = static_cast<float>(length_m);
-  return ray;
+                const Vec3& direction, double length_m) {
+  return shadow_ray(at_m - scene_centre_m(scene) + shadow_ray_offset_m(scene) * normal, direction,
+                    length_m);
 }
 
 bool all_plain(const Scene& scene) {
   return std::ranges::all_of(scene.instances, [&](const Instance& one) {
-    return !scene.surfaces[one.front_surface].bsdf && !scene.surfaces[one.back_surface].bsdf;
+    return !scene.surface(one, true).bsdf && !scene.surface(one, false).bsdf;
   });
 }
 
@@ -83,7 +67,9 @@ void OnwardLight::land(std::span<const OnwardRay> some, std::span<const double> 
                        const OnwardSink& sink, std::vector<OnwardRay>& next,
                        std::vector<double>& next_least_W) {
   narrow_.clear();
-  for (uint32_t i = 0; i < some.size(); ++i) narrow_.push_back(narrow(some[i], i, scene_.centre_m));
+  for (uint32_t i = 0; i < some.size(); ++i) {
+    narrow_.push_back(make_ray(some[i].origin_m - scene_.centre_m, some[i].direction, i));
+  }
   traced_ += some.size();
   find_hits(scene_, {narrow_, {}}, Coherence::incoherent, *buffer_);
   const int count = compact(*buffer_, kept_);
@@ -94,10 +80,8 @@ void OnwardLight::land(std::span<const OnwardRay> some, std::span<const double> 
     const auto index = static_cast<size_t>(buffer_->sample[i]);
     const OnwardRay& ray = some[index];
     const OpticalSurface& surface = scene_.surface(hits.instance[i], hits.front[i]);
-    const TrianglePlane& plane = scene_.plane(hits.instance[i], hits.triangle[i]);
-    const Vec3 outward(plane.normal[0], plane.normal[1], plane.normal[2]);
-    const Vec3 normal = hits.front[i] != 0 ? outward : Vec3(-outward);
-    const Vec3 at_m(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
+    const Vec3 normal = scene_.normal(hits.instance[i], hits.triangle[i], hits.front[i]);
+    const Vec3 at_m = hits.position_at_m(static_cast<size_t>(i));
     const Vec3 mirrored = ray.direction - 2.0 * normal.dot(ray.direction) * normal;
     const BandValues on = part_of(ray.power_W, surface.specular);
     const BandValues through = part_of(ray.power_W, surface.transmitted);

@@ -26,8 +26,9 @@ struct OnwardSink {
       scatter;
 };
 
-// A shadow ray of this length from a point on a surface along its normal.
-ShadowRay probe(const TraceableScene& scene, const Vec3& at_m, const Vec3& normal, double length_m);
+// A shadow ray of this length from a point on a surface.
+ShadowRay probe(const TraceableScene& scene, const Vec3& at_m, const Vec3& normal,
+                const Vec3& direction, double length_m);
 
 // Whether all surfaces only reflect as mirrors, scatter by Lambert's law and transmit without
 // change of direction.

@@ -99,20 +99,22 @@ Outlines::Outlines(const Facets& facets) {
   }
 }
 
-void Outlines::in_light(const Vec3& travel, std::vector<Line>& lines) const {
+std::vector<Line> Outlines::in_light(const Vec3& travel) const {
+  std::vector<Line> lines;
   for (const Edge& edge : edges_) {
-    const double one = edge.normal[0].dot(travel), other = edge.normal[1].dot(travel);
-    if (edge.facets != 2 || one * other <= 0.0) lines.push_back(edge.line);
+    if (edge.bounds_shadows(travel)) lines.push_back(edge.line);
   }
+  return lines;
 }
 
-void Outlines::in_sight(const Vec3& travel, std::vector<Line>& lines) const {
+std::vector<Line> Outlines::in_sight(const Vec3& travel) const {
   constexpr double smooth = 0.95;  // cosine between neighbours, 18 deg
+  std::vector<Line> lines;
   for (const Edge& edge : edges_) {
-    const double one = edge.normal[0].dot(travel), other = edge.normal[1].dot(travel);
-    const bool turns = edge.facets != 2 || one * other <= 0.0;
-    if (turns || edge.normal[0].dot(edge.normal[1]) < smooth) lines.push_back(edge.line);
+    const bool is_crease = edge.normal[0].dot(edge.normal[1]) < smooth;
+    if (is_crease || edge.bounds_shadows(travel)) lines.push_back(edge.line);
   }
+  return lines;
 }
 
 std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m) {
@@ -121,13 +123,18 @@ std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m)
   return cuts;
 }
 
-LineGrid::LineGrid(std::vector<Line> lines, const Vec3& travel, const Ball& ball)
-    : lines_(std::move(lines)),
-      centre_m_(ball.centre_m),
+BodyShape::BodyShape(const TraceableScene& scene)
+    : facets(scene.scene()),
+      outlines(facets),
+      cuts(all_cuts(facets, plane_rounding * scene_diameter_m(scene))) {}
+
+LineGrid::LineGrid(const TraceableScene& scene, const Outlines& outlines, const Vec3& travel)
+    : lines_(outlines.in_light(travel)),
+      centre_m_(scene_centre_m(scene)),
       across_(travel.unitOrthogonal()),
       aside_(travel.cross(across_)),
-      low_m_(-ball.radius_m),
-      per_m_(width / (2.0 * ball.radius_m)),
+      low_m_(-0.5 * scene_diameter_m(scene)),
+      per_m_(width / scene_diameter_m(scene)),
       cells_(width * width),
       seen_(lines_.size(), 0) {
   for (uint32_t i = 0; i < lines_.size(); ++i) add(i);

@@ -13,15 +13,19 @@ class Outlines {
   explicit Outlines(const Facets& facets);
 
   // Edges at which the surface ends or turns away from the light; only these bound shadows.
-  void in_light(const Vec3& travel, std::vector<Line>& lines) const;
+  std::vector<Line> in_light(const Vec3& travel) const;
   // Lines where the view against `travel` changes: visible outlines and creases.
-  void in_sight(const Vec3& travel, std::vector<Line>& lines) const;
+  std::vector<Line> in_sight(const Vec3& travel) const;
 
  private:
   struct Edge {
     Line line;
     Vec3 normal[2];
     int facets = 0;
+
+    bool bounds_shadows(const Vec3& travel) const {
+      return facets != 2 || normal[0].dot(travel) * normal[1].dot(travel) <= 0.0;
+    }
   };
   std::vector<Edge> edges_;
 };
@@ -29,12 +33,21 @@ class Outlines {
 // Lines at which other facets cut through each facet.
 std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m);
 
+// The facets of a scene, and the lines that bound shadows on them.
+struct BodyShape {
+  explicit BodyShape(const TraceableScene& scene);
+
+  Facets facets;
+  Outlines outlines;
+  std::vector<std::vector<Line>> cuts;  // by facet: all_cuts()
+};
+
 // A grid of lines, projected along the light's direction `travel`, for fast search of the lines
 // over a facet.
 class LineGrid {
  public:
-  // `ball`: contains all lines.
-  LineGrid(std::vector<Line> lines, const Vec3& travel, const Ball& ball);
+  // The outlines in light that travels along `travel`.
+  LineGrid(const TraceableScene& scene, const Outlines& outlines, const Vec3& travel);
 
   const std::vector<Line>& lines() const { return lines_; }
   // Finds the lines that may pass over or under a triangle.

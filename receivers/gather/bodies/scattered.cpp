@@ -20,17 +20,17 @@ struct Starts {
   std::vector<Vec3> at_m, direction;
 };
 
-Starts starts_of(const Facet& facet, const Cell& cell, const Vec3& normal,
-                 const SobolStream& stream, uint32_t first, uint32_t count) {
-  std::array<std::array<uint32_t, sobol_block>, sobol_dimensions> bits;
-  std::array<uint32_t*, sobol_dimensions> out;
-  for (size_t k = 0; k < out.size(); ++k) out[k] = bits[k].data();
-  sobol_points(stream, first, out);
+Starts starts_of(const FacetSide& side, const Cell& cell, const SobolStream& stream, uint32_t first,
+                 uint32_t count) {
+  const Facet& facet = *side.facet;
+  const Vec3 normal = side.normal();
+  SampleBlock samples;
+  sobol_points(stream, first, samples.columns());
   const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
   const Vec3 e1 = facet.corner_m[1] - facet.corner_m[0], e2 = facet.corner_m[2] - facet.corner_m[0];
   Starts starts;
   for (uint32_t i = 0; i < count; ++i) {
-    const auto u = [&](size_t k) { return sobol_fraction(bits[k][i]); };
+    const auto u = [&](size_t k) { return sobol_fraction(samples.bits[k][i]); };
     const double root = std::sqrt(u(0)), second = u(1);
     const Vec2 uv = cell.at({1.0 - root, root * (1.0 - second), root * second});
     const Vec3 local = lambertian_direction(u(2), u(3));
@@ -46,7 +46,7 @@ std::vector<bool> covered_of(const TraceableScene& scene, std::span<const Vec3> 
   std::array<ShadowRay, sobol_block> rays;
   std::array<uint8_t, sobol_block> clear;
   for (size_t i = 0; i < at_m.size(); ++i) {
-    rays[i] = probe(scene, at_m[i], normal, close_m);
+    rays[i] = probe(scene, at_m[i], normal, normal, close_m);
   }
   find_shadows(scene, std::span(rays).first(at_m.size()), clear);
   std::vector<bool> covered;
@@ -75,43 +75,38 @@ size_t ScatteredLight::node_at(size_t side, const Vec2& uv) const {
   return node;
 }
 
-ScatteredLight::ScatteredLight(const TraceableScene& scene, const Shape& shape, const Vec3& about_m,
-                               const Effort& effort) {
-  const std::span<const Facet> all = shape.facets.all();
-  double area_m2 = 0.0;
-  for (const Facet& facet : all) area_m2 += facet.area_m2;
-  const double patch_m2 = area_m2 / static_cast<double>(effort.patches);
-  patch_m2_ = patch_m2;
+ScatteredLight::ScatteredLight(const TraceableScene& scene, const BodyShape& shape,
+                               const Vec3& about_m, const Effort& effort)
+    : patch_m2_(shape.facets.area_m2() / static_cast<double>(effort.patches)),
+      close_m_(0.03 * std::sqrt(patch_m2_)) {
   const bool opaque = std::ranges::none_of(scene.scene().surfaces, [](const OpticalSurface& one) {
     return std::ranges::any_of(one.transmitted, [](double share) { return share > 0.0; });
   });
-  close_m_ = 0.03 * std::sqrt(patch_m2);
-  for (size_t number = 0; number < all.size(); ++number) {
-    const Facet& facet = all[number];
+  for (const Facet& facet : shape.facets.all()) {
     for (const bool front : {false, true}) {
+      const FacetSide one{&facet, front};
       const size_t side = unseen_.size();
       const bool inside = opaque && shape.facets.inward(facet.instance) == front;
-      unseen_.push_back(facet.free[front ? 1 : 0] || inside);
+      unseen_.push_back(one.is_free() || inside);
       root_.push_back(static_cast<uint32_t>(nodes_.size()));
       nodes_.push_back({});
       Screen screen(facet);
       lines_.emplace_back();
-      if (!unseen_.back() && facet.area_m2 > patch_m2) {
-        const Vec3 normal = front ? facet.normal : Vec3(-facet.normal);
-        const double rounding_m = 1e-7 * scene_diameter_m(scene);
-        std::vector<Line> lines;
-        shape.outlines.in_light(-normal, lines);
-        std::ranges::copy(shape.cuts[number], std::back_inserter(lines));
+      if (!unseen_.back() && facet.area_m2 > patch_m2_) {
+        const Vec3 normal = one.normal();
+        const double rounding_m = plane_rounding * scene_diameter_m(scene);
+        std::vector<Line> lines = shape.outlines.in_light(-normal);
+        std::ranges::copy(shape.cuts[shape.facets.number_of(facet)], std::back_inserter(lines));
         screen.add(lines, normal, -normal, rounding_m);
         for (const Line& line : lines) {
-          Screen one(facet);
-          one.add(std::span(&line, 1), normal, -normal, rounding_m);
-          if (!one.traces().empty() && one.traces()[0].height_m < close_m_) {
+          Screen single(facet);
+          single.add(std::span(&line, 1), normal, -normal, rounding_m);
+          if (!single.traces().empty() && single.traces()[0].height_m < close_m_) {
             lines_.back().push_back(line);
           }
         }
       }
-      if (!unseen_.back()) grow(side, root_.back(), {}, screen.traces(), facet, patch_m2);
+      if (!unseen_.back()) grow(side, root_.back(), {}, screen.traces(), facet);
     }
   }
   const auto bands = static_cast<size_t>(scene.scene().bands.count());
@@ -130,7 +125,7 @@ ScatteredLight::ScatteredLight(const TraceableScene& scene, const Shape& shape, 
 
 // Divides a cell until it is small compared with the body and with parts on it or close above it.
 void ScatteredLight::grow(size_t side, size_t node, const Cell& cell, std::span<const Trace> traces,
-                          const Facet& facet, double patch_m2) {
+                          const Facet& facet) {
   constexpr uint32_t finer = 3;  // additional divisions below the common size
   constexpr double margin = 0.5;
   const double cell_m2 = cell.share() * facet.area_m2, size_m = std::sqrt(cell_m2);
@@ -139,8 +134,8 @@ void ScatteredLight::grow(size_t side, size_t node, const Cell& cell, std::span<
     if (trace.height_m < size_m && meets(trace, margin)) close.push_back(trace);
   }
   const double long_m = std::ldexp(facet.ball.radius_m, -static_cast<int>(cell.level));
-  const bool small = cell_m2 < patch_m2 && long_m < 2.0 * std::sqrt(patch_m2);
-  const bool smallest = cell_m2 < patch_m2 / (1 << (2 * finer));
+  const bool small = cell_m2 < patch_m2_ && long_m < 2.0 * std::sqrt(patch_m2_);
+  const bool smallest = cell_m2 < patch_m2_ / (1 << (2 * finer));
   if (smallest || (small && close.empty())) {
     nodes_[node].crowded = !close.empty();
     patches_.push_back({side, node, cell});
@@ -152,7 +147,7 @@ void ScatteredLight::grow(size_t side, size_t node, const Cell& cell, std::span<
   std::vector<Trace> own(traces.size());
   for (uint32_t q = 0; q < 4; ++q) {
     for (size_t i = 0; i < traces.size(); ++i) own[i] = in_quarter(traces[i], q);
-    grow(side, first + q, cell.quarter(q), own, facet, patch_m2);
+    grow(side, first + q, cell.quarter(q), own, facet);
   }
 }
 
@@ -163,10 +158,9 @@ void ScatteredLight::find_covered(const TraceableScene& scene, const Facets& fac
   for (const Patch& patch : patches_) {
     Node& node = nodes_[patch.node];
     if (!node.crowded) continue;
-    const Facet& facet = facets.all()[patch.side / 2];
-    const Vec3 normal = patch.side % 2 == 1 ? facet.normal : Vec3(-facet.normal);
-    const Starts starts = starts_of(facet, patch.cell, normal, {seed, patch.node, 0}, 0, 64);
-    const std::vector<bool> covered = covered_of(scene, starts.at_m, normal, close_m_);
+    const FacetSide side = facets.side(patch.side);
+    const Starts starts = starts_of(side, patch.cell, {seed, patch.node, 0}, 0, 64);
+    const std::vector<bool> covered = covered_of(scene, starts.at_m, side.normal(), close_m_);
     node.covered = static_cast<double>(std::ranges::count(covered, true)) / 64.0;
     node.crowded = node.covered > 0.0 && node.covered < 1.0;
   }
@@ -176,9 +170,9 @@ std::vector<ScatteredLight::Work> ScatteredLight::work_of(const Task& task) cons
   const Scene& parts = task.scene.scene();
   std::vector<Work> work;
   for (const Patch& patch : patches_) {
-    const Instance& of = parts.instances[task.facets.all()[patch.side / 2].instance];
-    const uint32_t surface = patch.side % 2 == 1 ? of.front_surface : of.back_surface;
-    if (!(parts.surfaces[surface].diffuse[task.band] > 0.0)) continue;
+    const FacetSide side = task.facets.side(patch.side);
+    const Instance& of = parts.instances[side.facet->instance];
+    if (!(parts.surface(of, side.front).diffuse[task.band] > 0.0)) continue;
     work.push_back({patch, 0});
     if (nodes_[patch.node].crowded) work.push_back({patch, 1});
   }
@@ -189,14 +183,14 @@ std::vector<ScatteredLight::Work> ScatteredLight::work_of(const Task& task) cons
 void ScatteredLight::add_starts(const Task& task, const Work& one, uint64_t number, uint32_t count,
                                 uint32_t owner, std::vector<OnwardRay>& rays) const {
   const Patch& patch = one.patch;
-  const Facet& facet = task.facets.all()[patch.side / 2];
-  const Vec3 normal = patch.side % 2 == 1 ? facet.normal : Vec3(-facet.normal);
+  const FacetSide side = task.facets.side(patch.side);
+  const Vec3 normal = side.normal();
   const SobolStream stream{task.effort.seed,
                            hash_words(number, static_cast<uint64_t>(task.half), task.band), 0};
   const uint32_t at_once = std::min(count, sobol_block);
   std::vector<OnwardRay> others;
   for (uint32_t begin = 0; begin < count; begin += at_once) {
-    const Starts starts = starts_of(facet, patch.cell, normal, stream, begin, at_once);
+    const Starts starts = starts_of(side, patch.cell, stream, begin, at_once);
     std::vector<bool> covered(at_once, one.kind == 1);
     if (nodes_[patch.node].crowded) {
       covered = covered_of(task.scene, starts.at_m, normal, close_m_);

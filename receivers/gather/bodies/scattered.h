@@ -33,14 +33,8 @@ class ScatteredLight {
     int threads = 0;
   };
 
-  // Facets and outlines, and for each facet the lines at which others cut it.
-  struct Shape {
-    const Facets& facets;
-    const Outlines& outlines;
-    const std::vector<std::vector<Line>>& cuts;
-  };
   // Sides of facets from which no surface is visible scatter into empty space.
-  ScatteredLight(const TraceableScene& scene, const Shape& shape, const Vec3& about_m,
+  ScatteredLight(const TraceableScene& scene, const BodyShape& shape, const Vec3& about_m,
                  const Effort& effort);
 
   // Force and torque about the point, per watt of this band that leaves a piece of a side: the mean
@@ -85,7 +79,7 @@ class ScatteredLight {
   size_t node_of(size_t side, uint32_t level, uint64_t path) const;
   size_t node_at(size_t side, const Vec2& uv) const;
   void grow(size_t side, size_t node, const Cell& cell, std::span<const Trace> traces,
-            const Facet& facet, double patch_m2);
+            const Facet& facet);
   void find_covered(const TraceableScene& scene, const Facets& facets, uint64_t seed);
 
   // Computation of the field of one band with one set of rays.
@@ -121,12 +115,12 @@ class ScatteredLight {
   void settle(const Task& task, const std::vector<Work>& work, const std::vector<Reached>& reached);
   void find_means(size_t band);
 
+  double patch_m2_, close_m_;
   std::vector<uint32_t> root_;  // by side
   std::vector<bool> unseen_;    // by side
   std::vector<Node> nodes_;
   std::vector<Patch> patches_;
-  std::vector<std::vector<Line>> lines_;  // by side
-  double patch_m2_ = 0.0, close_m_ = 0.0;
+  std::vector<std::vector<Line>> lines_;     // by side
   std::vector<std::vector<Pair>> per_watt_;  // by band and node
 };
 

@@ -39,18 +39,15 @@ class SunlitBody::Direction {
               scene_diameter_m(body.scene_)),
         tolerance_N_m_(tolerance_N_m),
         bands_(static_cast<size_t>(body.scene_.scene().bands.count())),
-        onward_(body.scene_, body.facets_.numbers(), body.about_m_) {}
+        onward_(body.scene_, body.shape_.facets.numbers(), body.about_m_) {}
 
   SunlitWrench run() {
     const Vec3 travel = lamp_.body_from_emitter().direction(Vec3::UnitZ());
-    std::vector<Line> outlines;
-    body_.outlines_.in_light(travel, outlines);
-    LineGrid grid(std::move(outlines), travel,
-                  {scene_centre_m(body_.scene_), 0.5 * scene_diameter_m(body_.scene_)});
-    for (uint32_t instance = 0; instance < body_.facets_.instances(); ++instance) {
-      const bool outside = lamp_.outside(body_.facets_.ball_of(instance));
-      const auto inward = outside ? body_.facets_.inward(instance) : std::nullopt;
-      for (const Facet& facet : body_.facets_.of(instance)) {
+    LineGrid grid(body_.scene_, body_.shape_.outlines, travel);
+    for (uint32_t instance = 0; instance < body_.shape_.facets.instances(); ++instance) {
+      const bool outside = lamp_.outside(body_.shape_.facets.ball_of(instance));
+      const auto inward = outside ? body_.shape_.facets.inward(instance) : std::nullopt;
+      for (const Facet& facet : body_.shape_.facets.of(instance)) {
         for (const bool front : {false, true}) {
           if (inward != front) add_side({&facet, front}, grid);
         }
@@ -91,11 +88,10 @@ class SunlitBody::Direction {
     const Vec3 travel = light.momentum_W_m2.normalized();
     if (!(light.irradiance_W_m2 > 0.0) || !(normal.dot(travel) < -1e-9)) return;
     const Scene& scene = body_.scene_.scene();
-    const Instance& of = scene.instances[facet.instance];
-    const OpticalSurface& surface = scene.surfaces[side.front ? of.front_surface : of.back_surface];
-    const bool free = facet.free[side.front ? 1 : 0];
+    const OpticalSurface& surface = scene.surface(scene.instances[facet.instance], side.front);
+    const bool free = side.is_free();
     const bool throws = any(surface.transmitted) || (!free && any(surface.specular));
-    const auto number = 2 * static_cast<size_t>(&facet - body_.facets_.all().data());
+    const size_t number = 2 * body_.shape_.facets.number_of(facet);
     sides_.push_back({side, number + (side.front ? 1 : 0), travel, light,
                       FirstContact(surface, side.front, lamp_.fraction(), static_cast<int>(bands_)),
                       &surface, throws});
@@ -111,9 +107,9 @@ class SunlitBody::Direction {
   // facets often have the same plane and therefore the same direction.
   std::span<const Line> seen_along(const Vec3& direction) {
     if (!(direction - seen_direction_).isZero(1e-12)) {
-      seen_.clear();
-      body_.outlines_.in_sight(direction, seen_);
-      for (const auto& cuts : body_.cuts_) seen_.insert(seen_.end(), cuts.begin(), cuts.end());
+      seen_ = body_.shape_.outlines.in_sight(direction);
+      for (const auto& cuts : body_.shape_.cuts)
+        seen_.insert(seen_.end(), cuts.begin(), cuts.end());
       seen_direction_ = direction;
     }
     return seen_;
@@ -139,7 +135,7 @@ class SunlitBody::Direction {
       screen.add(lines, normal, direction, plane_rounding * scene_diameter_m(body_.scene_));
     };
     const Vec3 normal = lit.side.normal();
-    const std::vector<Line>& cuts = body_.cuts_[lit.number / 2];
+    const std::vector<Line>& cuts = body_.shape_.cuts[lit.number / 2];
     if (!free) {
       add(cuts, normal, lit.travel);
       if (whole) {
@@ -175,10 +171,8 @@ class SunlitBody::Direction {
     std::vector<ShadowRay> rays;
     for (const LitPiece& one : pieces_) {
       const LitSide& lit = sides_[one.side];
-      ShadowRay ray =
-          probe(body_.scene_, lit.side.facet->at(one.piece.centre_uv), lit.side.normal(), far_m);
-      for (int k = 0; k < 3; ++k) ray.direction[k] = static_cast<float>(-lit.travel[k]);
-      rays.push_back(ray);
+      rays.push_back(probe(body_.scene_, lit.side.facet->at(one.piece.centre_uv), lit.side.normal(),
+                           -lit.travel, far_m));
     }
     const std::vector<uint8_t> clear = unshadowed(rays);
     std::vector<LitPiece> kept;
@@ -195,8 +189,9 @@ class SunlitBody::Direction {
     for (size_t i = 0; i < pieces_.size(); ++i) {
       const LitSide& lit = sides_[pieces_[i].side];
       if (body_.scattered_.lines(lit.number).empty()) continue;
-      rays.push_back(probe(body_.scene_, lit.side.facet->at(pieces_[i].piece.centre_uv),
-                           lit.side.normal(), body_.scattered_.close_m()));
+      const Vec3 normal = lit.side.normal();
+      rays.push_back(probe(body_.scene_, lit.side.facet->at(pieces_[i].piece.centre_uv), normal,
+                           normal, body_.scattered_.close_m()));
       whose.push_back(i);
     }
     const std::vector<uint8_t> clear = unshadowed(rays);
@@ -254,7 +249,7 @@ class SunlitBody::Direction {
       }
       if (sum_W > 0.0) rays.push_back(ray);
     };
-    if (!lit.side.facet->free[lit.side.front ? 1 : 0]) {
+    if (!lit.side.is_free()) {
       add(lit.surface->specular, lit.travel - 2.0 * normal.dot(lit.travel) * normal, offset_m);
     }
     const uint32_t part = lit.side.facet->instance;
@@ -378,13 +373,11 @@ SunlitBody::SunlitBody(const TraceableScene& scene, const Beam& beam, const Vec3
     : scene_(scene),
       beam_(beam),
       about_m_(about_m),
-      facets_(scene.scene()),
+      shape_(scene),
       light_(std::make_shared<DiscLight>(*beam_.emitter, *beam_.aperture)),
-      outlines_(facets_),
-      cuts_(all_cuts(facets_, plane_rounding * scene_diameter_m(scene))),
-      area_m2_(facets_.area_m2()),
+      area_m2_(shape_.facets.area_m2()),
       mirror_cell_m2_(area_m2_ / static_cast<double>(effort.mirror_cells)),
-      scattered_(scene, {facets_, outlines_, cuts_}, about_m, effort.scattered) {}
+      scattered_(scene, shape_, about_m, effort.scattered) {}
 
 SunlitWrench SunlitBody::wrench(const RigidTransform& lab_from_body, double tolerance_N_m) const {
   return Direction(*this, lab_from_body, tolerance_N_m).run();

@@ -63,10 +63,8 @@ class SunlitBody {
   const TraceableScene& scene_;
   Beam beam_;
   Vec3 about_m_;
-  Facets facets_;
+  BodyShape shape_;
   BodyLight light_;
-  Outlines outlines_;
-  std::vector<std::vector<Line>> cuts_;  // by facet
   double area_m2_, mirror_cell_m2_;
   ScatteredLight scattered_;
 };

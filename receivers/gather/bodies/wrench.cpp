@@ -31,6 +31,10 @@ struct SampledLight {
   const BodyLamp& lamp;
   std::array<FirstContact, 2> contact;
   Vec3 about_m;
+
+  const FirstContact& contact_of(const FacetSide& side) const {
+    return contact[side.front ? 1 : 0];
+  }
 };
 
 // Results: six numbers per replicate, and the bounds of their errors.
@@ -41,7 +45,7 @@ struct WrenchEntries {
 
 // Adds the light on a side as if nothing shaded it.
 void add_open(const SampledLight& light, const FacetSide& side, const WrenchEntries& entries) {
-  const auto open = light.lamp.open_wrench(side, light.contact[side.front ? 1 : 0], light.about_m);
+  const auto open = light.lamp.open_wrench(side, light.contact_of(side), light.about_m);
   for (WrenchSum& replicate : entries.replicates) replicate += open.wrench;
   entries.bound.head<3>() += open.force_error_N;
   entries.bound.tail<3>() += open.torque_error_N_m;
@@ -77,11 +81,10 @@ class FacetSampler {
                uint32_t first) {
     const size_t blocks = std::max<size_t>(group[0].points / ray_block, 1);
     rays_.clear();
-    std::array<uint32_t*, sobol_dimensions> out;
-    for (size_t k = 0; k < sobol_dimensions; ++k) out[k] = samples_.bits[k].data();
     for (replicate_ = 0; replicate_ < streams.size(); ++replicate_) {
       for (size_t block = 0; block < blocks; ++block) {
-        sobol_points(streams[replicate_], first + static_cast<uint32_t>(block) * ray_block, out);
+        sobol_points(streams[replicate_], first + static_cast<uint32_t>(block) * ray_block,
+                     samples_.columns());
         light_.lamp.light().emitter().emit(samples_, emitted_);
         count_ = 0;
         size_t at = 0;
@@ -117,15 +120,8 @@ class FacetSampler {
       const double t = sobol_fraction(samples_.bits[dimension + 1][i]);
       const Vec3 at = origin + root * (1.0 - t) * edge1 + root * t * edge2;
       Vec3 from;
-      double power_W = share_m2;
-      if (directed) {
-        const Vec3 direction(emitted_.direction[0][i], emitted_.direction[1][i],
-                             emitted_.direction[2][i]);
-        power_W *= light_.lamp.along_direction_W_m2(direction, at, normal_emitter, from);
-      } else {
-        from = {emitted_.origin_m[0][i], emitted_.origin_m[1][i], emitted_.origin_m[2][i]};
-        power_W *= light_.lamp.from_point_W_m2(from, at, normal_emitter);
-      }
+      const double power_W =
+          share_m2 * light_.lamp.sampled_W_m2(emitted_, i, directed, at, normal_emitter, from);
       if (power_W > 0.0) add_ray(index, power_W, at, from, normal, normal_emitter);
     }
   }
@@ -138,16 +134,7 @@ class FacetSampler {
     const Vec3 towards = body_from_emitter_ * (between / length);
     const Vec3 origin = at_body - scene_centre_m(light_.scene) + ray_offset_m_ * normal;
     rays_.push_back({at_body, -towards, power_W, index, static_cast<uint32_t>(replicate_), false});
-    ShadowRay& ray = shadow_[count_++];
-    for (int k = 0; k < 3; ++k) {
-      ray.origin_m[k] = static_cast<float>(origin[k]);
-      ray.direction[k] = static_cast<float>(towards[k]);
-    }
-    ray.length_m = static_cast<float>(length - ray_offset_m_);
-  }
-
-  const FirstContact& contact_of(const FacetSide& side) const {
-    return light_.contact[side.front ? 1 : 0];
+    shadow_[count_++] = shadow_ray(origin, towards, length - ray_offset_m_);
   }
 
   void settle(std::span<const SampledSide> group) {
@@ -158,7 +145,7 @@ class FacetSampler {
     for (size_t s = 0; s < group.size(); ++s) {
       const FacetSide& side = group[s].side;
       sides_[s].as_open =
-          group[s].whole && contact_of(side).plain() && sides_[s].lit_W > sides_[s].dark_W;
+          group[s].whole && light_.contact_of(side).plain() && sides_[s].lit_W > sides_[s].dark_W;
       if (sides_[s].as_open) add_open(light_, side, entries_);
     }
     for (const GroupRay& ray : rays_) {
@@ -166,8 +153,9 @@ class FacetSampler {
       if (ray.lit == as_open) continue;
       const FacetSide& side = group[ray.side].side;
       const double signed_N = (as_open ? -ray.power_W : ray.power_W) / speed_of_light_m_s;
-      entries_.replicates[ray.replicate] += wrench_of(
-          signed_N * contact_of(side).of_ray(ray.travel, side.normal()), ray.at_m - light_.about_m);
+      entries_.replicates[ray.replicate] +=
+          wrench_of(signed_N * light_.contact_of(side).of_ray(ray.travel, side.normal()),
+                    ray.at_m - light_.about_m);
     }
   }
 
@@ -239,7 +227,7 @@ void find_sides(const Facets& facets, const BodyLamp& lamp, bool plain, const Ve
       const FacetSide side{&facet, front};
       const Exposure exposure = lamp.exposure_of(side);
       if (exposure == Exposure::none) continue;
-      if (plain && exposure == Exposure::whole && facet.free[front ? 1 : 0]) {
+      if (plain && exposure == Exposure::whole && side.is_free()) {
         item.open.push_back(side);
         continue;
       }
@@ -327,8 +315,7 @@ Gathered WrenchGather::wrench(const RigidTransform& lab_from_body, const WrenchR
     }
   }
   const auto surface = [&](const Item& item, bool front) -> const OpticalSurface& {
-    const Instance& of = scene.instances[item.instance];
-    return scene.surfaces[front ? of.front_surface : of.back_surface];
+    return scene.surface(scene.instances[item.instance], front);
   };
   parallel_for(items.size(), options.threads, [&](size_t i) {
     Item& item = items[i];

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/transform.h"
 #include "scenes/gltf/file/document.h"
 
 namespace photorque::gltf {
@@ -30,6 +31,11 @@ class AccessorReader {
   // Component `component` of element `element` (below count()) as a real number; integers of
   // normalized accessors are scaled to [0, 1] or [−1, 1] (section 3.6.2.2).
   double number(size_t element, size_t component) const;
+
+  // The first three components of an element.
+  Vec3 vector3(size_t element) const {
+    return {number(element, 0), number(element, 1), number(element, 2)};
+  }
 
   // Unsigned integer at `element` of a scalar accessor.
   uint32_t index(size_t element) const;

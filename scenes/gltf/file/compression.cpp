@@ -14,11 +14,10 @@ void decompress(Document* document, MemoryBudget* budget) {
 
 uint64_t extension_number(const Document& document, const json& extension, const char* key,
                           const std::string& where) {
-  const auto found = extension.is_object() ? extension.find(key) : extension.end();
-  const bool there = extension.is_object() && found != extension.end();
+  const json* const found = member_of(extension, key);
   constexpr uint64_t largest = 1ull << 53;
-  if (!there || !found->is_number_unsigned() || found->get<uint64_t>() > largest) {
-    throw document.wrong(where + pointer(key), there ? describe_json(*found) : "nothing",
+  if (!found || !found->is_number_unsigned() || found->get<uint64_t>() > largest) {
+    throw document.wrong(where + pointer(key), found ? describe_json(*found) : "nothing",
                          "a whole number");
   }
   return found->get<uint64_t>();

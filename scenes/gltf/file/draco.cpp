@@ -44,10 +44,9 @@ class Decoder {
   // Replaces the primitive's geometry if it has only Draco data.
   void decode(size_t mesh, size_t index) {
     json& primitive = document_.json["meshes"][mesh]["primitives"][index];
-    const auto extensions = primitive.find("extensions");
-    if (extensions == primitive.end() || !extensions->is_object()) return;
-    const auto extension = extensions->find(extension_name);
-    if (extension == extensions->end()) return;
+    const json* const extensions = member_of(primitive, "extensions");
+    const json* const extension = extensions ? member_of(*extensions, extension_name) : nullptr;
+    if (!extension) return;
     where_ = pointer("meshes", mesh, "primitives", index, "extensions", extension_name);
     if (has_plain_positions(primitive)) return;
     const Plain plain = plain_of(*extension, primitive);
@@ -60,15 +59,14 @@ class Decoder {
 
  private:
   const json* accessor_of(const json& primitive, const char* attribute) const {
-    const auto attributes = primitive.find("attributes");
-    if (attributes == primitive.end() || !attributes->contains(attribute)) return nullptr;
-    const json& index = (*attributes)[attribute];
-    const auto accessors = document_.json.find("accessors");
-    if (!index.is_number_unsigned() || accessors == document_.json.end() ||
-        index.get<uint64_t>() >= accessors->size()) {
+    const json* const attributes = member_of(primitive, "attributes");
+    const json* const index = attributes ? member_of(*attributes, attribute) : nullptr;
+    const json* const accessors = member_of(document_.json, "accessors");
+    if (!index || !index->is_number_unsigned() || !accessors ||
+        index->get<uint64_t>() >= accessors->size()) {
       return nullptr;
     }
-    return &(*accessors)[index.get<size_t>()];
+    return &(*accessors)[index->get<size_t>()];
   }
 
   bool has_plain_positions(const json& primitive) const {
@@ -78,11 +76,8 @@ class Decoder {
   }
 
   std::optional<uint32_t> id_of(const json& extension, const char* attribute) const {
-    const auto attributes = extension.find("attributes");
-    if (attributes == extension.end() || !attributes->is_object() ||
-        !attributes->contains(attribute)) {
-      return std::nullopt;
-    }
+    const json* const attributes = member_of(extension, "attributes");
+    if (!attributes || !member_of(*attributes, attribute)) return std::nullopt;
     return static_cast<uint32_t>(
         extension_number(document_, *attributes, attribute, where_ + "/attributes"));
   }

@@ -112,10 +112,10 @@ void decode_meshopt_views(Document* document, MemoryBudget* budget) {
   const size_t views = document->json["bufferViews"].size();
   for (size_t i = 0; i < views; ++i) {
     json& view = document->json["bufferViews"][i];
-    const auto extensions = view.find("extensions");
-    if (extensions == view.end() || !extensions->is_object()) continue;
-    if (!extensions->contains(meshopt_extension)) continue;
-    const json extension = (*extensions)[meshopt_extension];
+    const json* const extensions = member_of(view, "extensions");
+    const json* const found = extensions ? member_of(*extensions, meshopt_extension) : nullptr;
+    if (!found) continue;
+    const json extension = *found;
     const std::string where = pointer("bufferViews", i, "extensions", meshopt_extension);
     const Packed packed = read_packed(*document, extension, where);
     std::string bytes = unpacked(*document, packed, budget, where);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/errors.h"
+#include "core/text/format.h"
 
 namespace photorque::gltf {
 
@@ -86,23 +87,21 @@ constexpr Field asset[] = {
     {.key = "minVersion", .shape = Shape::text},
 };
 
+constexpr Field byte_length = {.key = "byteLength",
+                               .shape = Shape::integer,
+                               .required = true,
+                               .low = 1,
+                               .high = largest_integer};
+
 constexpr Field buffer[] = {
-    {.key = "byteLength",
-     .shape = Shape::integer,
-     .required = true,
-     .low = 1,
-     .high = largest_integer},
+    byte_length,
     {.key = "uri", .shape = Shape::text},
 };
 
 constexpr Field buffer_view[] = {
     {.key = "buffer", .shape = Shape::reference, .required = true, .target = "buffers"},
     {.key = "byteOffset", .shape = Shape::integer, .low = 0, .high = largest_integer},
-    {.key = "byteLength",
-     .shape = Shape::integer,
-     .required = true,
-     .low = 1,
-     .high = largest_integer},
+    byte_length,
     {.key = "byteStride", .shape = Shape::integer, .low = 4, .high = 252, .multiple = 4},
     {.key = "target", .shape = Shape::integer, .choices = "34962 34963"},
 };
@@ -284,20 +283,18 @@ bool is_choice(const json& value, const char* choices) {
 
 std::string SchemaWalk::expectation(const Field& field) const {
   if (field.choices != nullptr) return "one of " + std::string(field.choices);
-  std::ostringstream range;
-  range.precision(16);
-  if (field.low > -1e308) range << " >= " << field.low;
-  if (field.high < 1e308) range << (field.low > -1e308 ? " and" : "") << " <= " << field.high;
+  std::string range;
+  if (field.low > -1e308) range += printed(" >= %.16g", field.low);
+  if (field.high < 1e308) range += (range.empty() ? "" : " and") + printed(" <= %.16g", field.high);
   switch (field.shape) {
     case Shape::integer:
       return (field.multiple > 1 ? "a multiple of " + std::to_string(field.multiple)
                                  : "an integer") +
-             range.str();
+             range;
     case Shape::number:
-      return "a number" + range.str();
+      return "a number" + range;
     case Shape::numbers:
-      return (field.length > 0 ? std::to_string(field.length) + " numbers" : "numbers") +
-             range.str();
+      return (field.length > 0 ? std::to_string(field.length) + " numbers" : "numbers") + range;
     case Shape::text:
       return "a text";
     case Shape::flag:
@@ -382,6 +379,12 @@ std::string describe_json(const json& value) {
   constexpr size_t longest = 60;
   const std::string text = value.dump();
   return text.size() <= longest ? text : text.substr(0, longest) + "...";
+}
+
+const json* member_of(const json& value, const char* key) {
+  if (!value.is_object()) return nullptr;
+  const auto found = value.find(key);
+  return found == value.end() ? nullptr : &*found;
 }
 
 void check_schema(const json& document, const std::string& file) {
