@@ -6,6 +6,7 @@
 
 #include "attitude/recordings/kvn.h"
 #include "attitude/recordings/text_lines.h"
+#include "core/constants.h"
 #include "core/errors.h"
 #include "core/settings/settings.h"
 #include "core/text/format.h"
@@ -81,13 +82,19 @@ struct Meaning {
 // Whether the name denotes something other than a reading of motion: an error, a target, an
 // increment.
 bool is_of_another_kind(const Words& words) {
-  return words.any_is({"err",     "error",  "errors",    "fehler", "errore",      "erreur",
+  // "Time since first frame" is a time, "frame rate" is not.
+  const bool is_frame = words.has_word_with_prefix({"frame"}) && words.all.front() != "time";
+  // "dTime" and "d theta" are increments, "d theta / dt" is a rate.
+  const bool is_increment =
+      words.all.size() > 1 && words.all.front() == "d" && !words.any_is({"dt"});
+  return is_frame || is_increment ||
+         words.any_is({"err",     "error",  "errors",    "fehler", "errore",      "erreur",
                        "std",     "stdev",  "stddev",    "unc",    "incertitude", "variance",
                        "cov",     "target", "setpoint",  "soll",   "cmd",         "command",
                        "desired", "ref",    "reference", "goal",   "consigne",    "fft",
-                       "delta",   "ddot",   "lat",       "lon",    "fps"}) ||
+                       "delta",   "step",   "ddot",      "lat",    "lon",         "fps"}) ||
          words.has_word_with_prefix({"sigma", "uncert", "unsicher", "incert", "sollw", "latitud",
-                                     "longitud", "temper", "sampl", "frame", "spectr"}) ||
+                                     "longitud", "temper", "sampl", "spectr"}) ||
          words.any_has({"moment", "torque", "impuls"});
 }
 
@@ -311,6 +318,24 @@ std::string unit_of_coordinates(const FileHead& head, const std::vector<Words>& 
   return most > longest_m ? "mm" : "m";
 }
 
+// Unit of an angle without a stated unit: degrees if it goes to and fro over more than a turn, as a
+// swing or as an angle that starts again after a turn. An angle that only grows may be in radians.
+std::string unit_of_angle(const FileHead& head, size_t place) {
+  double least = 0.0, most = 0.0, forth = 0.0, back = 0.0;
+  std::optional<double> last;
+  for (const auto& row : head.rows) {
+    const double angle = row[place];
+    if (!std::isfinite(angle)) continue;
+    if (last) (angle > *last ? forth : back) += std::abs(angle - *last);
+    last = angle;
+    least = std::min(least, angle);
+    most = std::max(most, angle);
+  }
+  constexpr double to_and_fro = 0.1;
+  const bool returns = std::min(forth, back) > to_and_fro * (forth + back);
+  return returns && most - least > 2.0 * pi ? "deg" : "rad";
+}
+
 ReadColumn read_column(const FileHead& head, size_t place, HeaderCell cell,
                        const std::vector<Words>& siblings) {
   const std::string& in_file = head.header[place];
@@ -368,6 +393,7 @@ ReadColumn read_column(const FileHead& head, size_t place, HeaderCell cell,
                                                : words.any_is({"micros"}) ? "us"
                                                                           : clock_unit(head, place))
       : is_one_of(meaning.stem, {"x", "y"}) ? unit_of_coordinates(head, siblings, place)
+      : meaning.usual_unit == "rad"         ? unit_of_angle(head, place)
                                             : meaning.usual_unit;
   return as(meaning, usual, false);
 }
