@@ -214,9 +214,8 @@ class RecordingReader {
     separator_ = separator;
     take_old_names();
     for (size_t i = 0; i < columns_.size(); ++i) {
-      if (i == time_column_) continue;
       const std::string& name = columns_[i].name;
-      if (name.empty()) throw error("header", "a column without a name", "names for all columns");
+      if (is_left_out(i)) continue;
       if (name == "t_s" || recording_.find(name) != nullptr) {
         throw error("header", "the column " + name + " twice", "every channel once");
       }
@@ -229,6 +228,10 @@ class RecordingReader {
     }
     return true;
   }
+
+  // Whether column `i` is no channel: the time, or a column without a name. Such columns are the
+  // row numbers of tables, or follow a separator at the end of every line.
+  bool is_left_out(size_t i) const { return i == time_column_ || columns_[i].name.empty(); }
 
   // The former name of the yaw of body x is "heading". A column of this name is the yaw unless the
   // file has a yaw too. It is then the direction of the tilt.
@@ -268,7 +271,7 @@ class RecordingReader {
     if (!take_time(time_s, lines_.number())) return;
     size_t channel = 0;
     for (size_t i = 0; i < cells_.size(); ++i) {
-      if (i == time_column_) continue;
+      if (is_left_out(i)) continue;
       std::optional<double> value = number_of(cells_[i]);
       if (!value) {
         ++report.unreadable_cells;
