@@ -112,10 +112,15 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
   std::vector<std::vector<double>> sizes(highest_order + 1);
   std::vector<double> steps;
   size_t windows = 0;
+  double squares = 0.0, readings = 0.0;  // of the deviations from the mean of a run; their number
   for (const Observation& seen : runs) {
     const std::vector<ReadingAt> x = readings_of(seen, channel);
     windows += x.size() - std::min(x.size(), lowest_order);
-    const double one = std::sqrt(mean_rows(seen, channel));
+    const double rows = mean_rows(seen, channel), one = std::sqrt(rows);
+    double mean = 0.0;
+    for (const ReadingAt& reading : x) mean += reading.value / static_cast<double>(x.size());
+    for (const ReadingAt& reading : x) squares += rows * std::pow(reading.value - mean, 2);
+    readings += static_cast<double>(x.size());
     for (size_t order = lowest_order; order <= highest_order; ++order) {
       for (size_t i = 0; i + order < x.size(); ++i) {
         if (stands_still(x, i, order)) continue;
@@ -137,6 +142,10 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
     if (!(next < quieter * level)) break;
     level = next;
   }
+  // The level of white noise is the standard deviation of the readings. A higher level is that of a
+  // motion with fewer than three readings per period, which hides the noise.
+  constexpr double of_spread = 1.3;
+  if (level * level * readings > of_spread * of_spread * squares) return std::nullopt;
   const double step = steps.empty() ? 0.0 : *std::min_element(steps.begin(), steps.end());
   const double least = std::max(level, step / std::sqrt(12.0));
   if (!(least > 0.0)) return std::nullopt;
