@@ -501,7 +501,7 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
   };
   for (const fs::path& path : recordings) m.names.push_back(path.string());
   read_all();
-  circle = circle_of(m.recordings.front());
+  if (m.recordings.front().find("angle_rad") == nullptr) circle = circle_of(m.recordings.front());
   if (circle) read_all();
   infer_machine(m);
   if (m.rate_from) {
