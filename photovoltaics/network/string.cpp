@@ -13,18 +13,6 @@ constexpr double max_ohm = 1e90;
 
 }  // namespace
 
-std::optional<PlainString> StringCurve::plain() const {
-  if (parts_.size() != 1 || runs_.size() != 1) return std::nullopt;
-  const Run& run = runs_[0];
-  if (run.offset_V != 0.0) return std::nullopt;
-  return PlainString{run.law,
-                     std::span(photocurrents_A_).subspan(run.first_cell, run.filled_cells),
-                     std::span(copies_).subspan(run.first_cell, run.filled_cells),
-                     run.series_ohm,
-                     &parts_[0].bypass,
-                     &blocking_};
-}
-
 StringState StringCurve::make_state() const {
   StringState state;
   state.cells.resize(cells_.size());

@@ -18,15 +18,6 @@ namespace photorque {
 
 using CellTables = std::vector<std::shared_ptr<const DiodeVoltageLaw>>;
 
-// A string of cells of one law in series, with at most one bypass diode over all of them.
-struct PlainString {
-  const DiodeVoltageLaw* law = nullptr;
-  std::span<const double> photocurrents_A, copies;  // padded to DiodeVoltageLaw::lanes
-  double series_ohm = 0.0;                          // total of all cells
-  const DiodeJunction* bypass = nullptr;
-  const DiodeJunction* blocking = nullptr;
-};
-
 // A point of a string's curve, with the data for bounds between two points. Reused between
 // evaluations to avoid allocations.
 struct StringState {
@@ -91,8 +82,6 @@ class StringCurve {
   // Lower bound of V at any current; −∞ unless clamping diodes bypass all cells.
   double lowest_V() const;
   bool has_blocking_clamp() const { return blocking_.kind == Diode::Kind::clamp; }
-  // This string as a PlainString, which points into this object; nothing for other strings.
-  std::optional<PlainString> plain() const;
   // Voltage interval over which a cell's curve hardly changes its form: a tenth of the smallest n
   // V_t.
   double close_V() const { return close_V_; }
