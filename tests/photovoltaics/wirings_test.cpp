@@ -10,18 +10,12 @@
 namespace photorque {
 namespace {
 
-SettingsNode node(decltype(SettingsNode::value) value) {
-  return {std::move(value), {"array.toml", 1}};
-}
+using reference::list, reference::node;
 
 SettingsNode words(const std::vector<std::string>& texts) {
   SettingsNode::Array array;
   for (const std::string& text : texts) array.push_back(node(text));
   return node(std::move(array));
-}
-
-SettingsNode list(std::vector<SettingsNode> members) {
-  return node(SettingsNode::Array(std::move(members)));
 }
 
 ArrayDesign design(int64_t columns, int64_t rows, const std::string& key, const SettingsNode& value,
@@ -30,9 +24,7 @@ ArrayDesign design(int64_t columns, int64_t rows, const std::string& key, const 
                                {"bypass", node(bypass)},
                                {"temperature_K", node(temperature_K)}};
   table[key] = value;
-  SettingsNode root = node(std::move(table));
-  return read_array_design(
-      Settings(std::make_shared<const SettingsNode>(std::move(root)), "array"));
+  return reference::design(std::move(table));
 }
 
 // The levels are those of tests/data/ngspice_wirings.py, which made the currents.
