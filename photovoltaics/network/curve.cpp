@@ -144,9 +144,8 @@ ArrayCurve::CurrentGuess ArrayCurve::guess_current(size_t s, double x, Node& nod
     state.current_A = hermite_A(low->strings[s], high->strings[s], x);
     return {high->strings[s].current_A, low->strings[s].current_A};
   }
-  const ElementPoint at{state.voltage_V, state.slope_ohm, state.curvature_V_A2, state.third_V_A3};
-  state.current_A =
-      state.slope_ohm > 0.0 ? extrapolated_A(at, state.current_A, x) : strings_[s].first_guess_A();
+  state.current_A = state.slope_ohm > 0.0 ? extrapolated_A(state, state.current_A, x)
+                                          : strings_[s].first_guess_A();
   return {0.0, strings_[s].largest_photocurrent_A()};
 }
 

@@ -88,6 +88,12 @@ struct ElementPoint {
   Slopes slopes() const { return {slope_ohm, curvature_V_A2, third_V_A3}; }
 };
 
+// V(I) of elements in parallel at their common voltage, from the sum of their I(V).
+inline ElementPoint tied_point(double voltage_V, const Slopes& current) {
+  const Slopes voltage = inverted(current);
+  return {voltage_V, voltage.slope, voltage.curvature, voltage.third};
+}
+
 // One cell at a current of either sign.
 inline ElementPoint cell_at(const LitCell& cell, double current_A, JunctionState& state) {
   const DiodeVoltage v = cell.law->at(cell.photocurrent_A - current_A);

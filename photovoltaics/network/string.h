@@ -20,12 +20,8 @@ using CellTables = std::vector<std::shared_ptr<const DiodeVoltageLaw>>;
 
 // A point of a string's curve, with the data for bounds between two points. Reused between
 // evaluations to avoid allocations.
-struct StringState {
+struct StringState : ElementPoint {  // slope_ohm is ∞ for a blocked string
   double current_A = 0.0;
-  double voltage_V = 0.0;
-  double slope_ohm = 0.0;       // −dV/dI; ∞ for a blocked string
-  double curvature_V_A2 = 0.0;  // d²V/dI²
-  double third_V_A3 = 0.0;      // d³V/dI³
   std::vector<JunctionState> cells;
   // A part at its current, from which the next solution starts; for a bypass junction in parallel
   // with it, the voltage without R_s and the conductance.
@@ -37,8 +33,6 @@ struct StringState {
   };
   std::vector<Part> parts;
   double blocking_ohm = 0.0;  // blocking junction, without R_s
-
-  Slopes slopes() const { return {slope_ohm, curvature_V_A2, third_V_A3}; }
 };
 
 // State of the ideal diodes. On a piece of the curve on which it is constant, the string is a
