@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -307,6 +306,15 @@ std::vector<LightBins> leave_one_out(const ArrayLight& light, const LightBins& m
   return all;
 }
 
+// Tukey's jackknife error of a number from its values without each replicate in turn.
+double jackknife_error(std::span<const double> without) {
+  const auto count = static_cast<double>(without.size());
+  double average = 0.0, squares = 0.0;
+  for (const double value : without) average += value / count;
+  for (const double value : without) squares += (value - average) * (value - average);
+  return std::sqrt((count - 1.0) / count * squares);
+}
+
 // The values at the mean of all replicates, with Tukey's jackknife errors. The bias is of second
 // order in the error and not removed, so that the results agree with the printed curve.
 Estimates estimate(const PreparedArray& array, const ArrayLight& light, const LightBins& mean,
@@ -315,22 +323,16 @@ Estimates estimate(const PreparedArray& array, const ArrayLight& light, const Li
   const FollowingTemperature temperature(array, value, slope);
   Estimates estimates{};
   for (size_t k = 0; k < Headline::count; ++k) estimates[k].value = value.value[k];
-  const int replicates = light.power_W.replicates;
-  if (replicates < 2) return estimates;
-  const double count = replicates;
-  std::vector<Headline> without;
+  if (light.power_W.replicates < 2) return estimates;
+  std::array<std::vector<double>, Headline::count> without;
   for (const LightBins& others : leave_one_out(light, mean)) {
-    without.push_back(headline(array, others));
-    temperature.follow(without.back());
+    Headline one = headline(array, others);
+    temperature.follow(one);
+    for (size_t k = 0; k < Headline::count; ++k) without[k].push_back(one.value[k]);
   }
+  const double common = light.power_W.common_error();
   for (size_t k = 0; k < Headline::count; ++k) {
-    double average = 0.0, squares = 0.0;
-    for (const Headline& h : without) average += h.value[k] / count;
-    for (const Headline& h : without) {
-      squares += (h.value[k] - average) * (h.value[k] - average);
-    }
-    estimates[k].standard_error = std::sqrt((count - 1.0) / count * squares);
-    const double common = light.power_W.common_error();
+    estimates[k].standard_error = jackknife_error(without[k]);
     if (k == Headline::temperature) {
       estimates[k].standard_error =
           std::hypot(estimates[k].standard_error, common * temperature.kelvin_per_light());
@@ -382,25 +384,23 @@ CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
                       std::vector<double>(cells.current_A.size(), 0.0),
                       {sum_of(cells.incident_W), 0.0},
                       array.area_m2};
-  const int replicates = light.power_W.replicates;
-  if (replicates < 2) return result;
-  std::vector<CellLight> without;
-  for (const LightBins& others : leave_one_out(light, mean)) without.push_back(array.light(others));
-  // Tukey's jackknife error, with the error that all replicates have in common.
-  const double count = replicates;
-  const auto error = [&](const std::function<double(const CellLight&)>& of, double value) {
-    double average = 0.0, squares = 0.0;
-    for (const CellLight& one : without) average += of(one) / count;
-    for (const CellLight& one : without) squares += std::pow(of(one) - average, 2);
-    const Estimate estimate{value, std::sqrt((count - 1.0) / count * squares)};
+  if (light.power_W.replicates < 2) return result;
+  const size_t count = cells.current_A.size();
+  std::vector<std::vector<double>> current_A(count);  // per cell, without each replicate in turn
+  std::vector<double> incident_W;
+  for (const LightBins& others : leave_one_out(light, mean)) {
+    const CellLight one = array.light(others);
+    incident_W.push_back(sum_of(one.incident_W));
+    for (size_t i = 0; i < count; ++i) current_A[i].push_back(one.current_A[i]);
+  }
+  const auto error = [&](double value, std::span<const double> without) {
+    const Estimate estimate{value, jackknife_error(without)};
     return with_common_error(estimate, light.power_W.common_error()).standard_error;
   };
-  for (size_t i = 0; i < result.photocurrent_A.size(); ++i) {
-    result.photocurrent_error_A[i] =
-        error([i](const CellLight& one) { return one.current_A[i]; }, result.photocurrent_A[i]);
+  for (size_t i = 0; i < count; ++i) {
+    result.photocurrent_error_A[i] = error(cells.current_A[i], current_A[i]);
   }
-  result.power_on_cells_W.standard_error = error(
-      [](const CellLight& one) { return sum_of(one.incident_W); }, result.power_on_cells_W.value);
+  result.power_on_cells_W.standard_error = error(result.power_on_cells_W.value, incident_W);
   return result;
 }
 

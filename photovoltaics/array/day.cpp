@@ -84,21 +84,16 @@ class PowerSurface {
   std::array<std::array<double, lights>, temperatures> power_W_{};
 };
 
-// One step of the battery. Returns the fraction of the missing energy that it delivers; 1 without a
-// deficit.
-double step_battery(const Battery& battery, double surplus_W, double step_s, double* charge_J) {
-  if (surplus_W >= 0.0) {
-    *charge_J =
-        std::min(battery.capacity_J, *charge_J + surplus_W * battery.charge_efficiency * step_s);
-    return 1.0;
-  }
-  const double needed_J = -surplus_W / battery.discharge_efficiency * step_s;
-  const double given_J = std::min(needed_J, *charge_J);
-  *charge_J -= given_J;
-  return given_J / needed_J;
-}
-
 }  // namespace
+
+Battery::Step Battery::step(double charge_J, double surplus_W, double step_s) const {
+  const bool charges = surplus_W >= 0.0;
+  const double rate_W = charges ? surplus_W * charge_efficiency : surplus_W / discharge_efficiency;
+  const double room_J = charges ? capacity_J - charge_J : -charge_J;
+  const bool reaches_limit = rate_W != 0.0 && rate_W * step_s / room_J >= 1.0;
+  if (reaches_limit) return {charges ? capacity_J : 0.0, room_J / rate_W};
+  return {std::clamp(charge_J + rate_W * step_s, 0.0, capacity_J), step_s};
+}
 
 double LampDroop::light_at(double time_s) const {
   const double faded = depth * -std::expm1(-time_s / time_constant_s);
@@ -141,11 +136,12 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
     day.array_W.push_back(array_W);
     day.charge_J.push_back(charge_J);
     if (k == steps) break;
-    const double served =
-        step_battery(s.battery, array_W * s.converter_efficiency - s.load_W, step_s, &charge_J);
-    if (served < 1.0 && !day.empty_after_s) day.empty_after_s = time_s;
+    const double surplus_W = array_W * s.converter_efficiency - s.load_W;
+    const Battery::Step step = s.battery.step(charge_J, surplus_W, step_s);
+    charge_J = step.charge_J;
+    const bool is_unserved = surplus_W < 0.0 && step.until_limit_s < step_s;
+    if (is_unserved && !day.empty_after_s) day.empty_after_s = time_s;
     day.array_energy_J += array_W * step_s;
-    day.load_energy_J += s.load_W * step_s;
     if (plate) {
       const double heating_W_m2 =
           design.heat->absorptance * light * light_W_m2 - array_W / array.area_of_cells_m2;

@@ -29,6 +29,13 @@ struct Battery {
   double charge = 1.0;                 // initial charge as a fraction of the capacity, in [0, 1]
   double charge_efficiency = 0.97;  // stored energy over energy delivered to the battery, in (0, 1]
   double discharge_efficiency = 0.97;  // delivered energy over that taken from it, in (0, 1]
+
+  struct Step {
+    double charge_J = 0.0;       // at the end
+    double until_limit_s = 0.0;  // time until it is full or empty; the whole step if it is neither
+  };
+  // A step with a constant surplus of power at the terminals; a deficit is negative.
+  Step step(double charge_J, double surplus_W, double step_s) const;
 };
 
 // Settings of a day; every efficiency is in (0, 1].
@@ -47,7 +54,7 @@ struct DaySettings {
 struct DayResult {
   std::vector<double> time_s, temperature_K, array_W, charge_J;
   double final_temperature_K = 0.0;
-  double array_energy_J = 0.0, load_energy_J = 0.0;
+  double array_energy_J = 0.0;
   std::optional<double> empty_after_s;  // time at which the load is first not served
   double mean_array_W = 0.0;
 };

@@ -184,30 +184,18 @@ void PowerSupply::take(double time_s, double step_s, double potential_W) {
   const double surplus_W = efficiency * potential_W - design_.load_W;
   // The first part of the step ends when the battery is full or empty. In the rest, the array
   // supplies what the load needs, or the load receives what the array supplies.
-  double first_s = step_s, array_J = 0.0, load_J = 0.0, into_J = 0.0, out_J = 0.0;
   const double before_J = stored_J_;
-  const bool charges = surplus_W >= 0.0;
-  const double rate_W =
-      charges ? surplus_W * battery.charge_efficiency : surplus_W / battery.discharge_efficiency;
-  const double room_J = charges ? battery.capacity_J - stored_J_ : -stored_J_;
-  const bool reaches = rate_W != 0.0 && rate_W * step_s / room_J >= 1.0;
-  if (room_J == 0.0 && rate_W != 0.0) {
-    first_s = 0.0;
-  } else if (reaches) {
-    first_s = room_J / rate_W;
-  }
-  const double rest_s = step_s - first_s;
-  if (charges) {
+  const Battery::Step step = battery.step(stored_J_, surplus_W, step_s);
+  stored_J_ = step.charge_J;
+  const double first_s = step.until_limit_s, rest_s = step_s - first_s;
+  double array_J = potential_W * step_s, load_J = design_.load_W * step_s;
+  double into_J = 0.0, out_J = 0.0;
+  if (surplus_W >= 0.0) {
     into_J = surplus_W * first_s;
-    const double needed_W = design_.load_W / efficiency;
-    array_J = potential_W * first_s + needed_W * rest_s;
-    load_J = design_.load_W * step_s;
-    stored_J_ = rest_s > 0.0 || reaches ? battery.capacity_J : stored_J_ + rate_W * first_s;
+    array_J = potential_W * first_s + design_.load_W / efficiency * rest_s;
   } else {
     out_J = -surplus_W * first_s;
-    array_J = potential_W * step_s;
     load_J = design_.load_W * first_s + efficiency * potential_W * rest_s;
-    stored_J_ = rest_s > 0.0 || reaches ? 0.0 : stored_J_ + rate_W * first_s;
   }
   const auto tell = [&](bool& is, bool now, const char* begins, const char* ends) {
     if (now != is) events_.push_back({now ? begins : ends, time_s + (now ? first_s : 0.0)});

@@ -17,17 +17,15 @@ struct BandFraction {
   double current_A_W = 0.0;
 };
 
-// The fraction of a spectral line that is so narrow that it is treated as one wavelength.
-BandFraction line_fraction(const QuantumEfficiency& efficiency, const Spectrum& spectrum,
-                           double low_m, double high_m) {
-  const double power = band_fractions(spectrum, Bands{{low_m, high_m}})[0];
-  return {power, power * responsivity_A_W(efficiency, spectrum.centre_m)};
-}
-
-BandFraction smooth_fraction(const QuantumEfficiency& efficiency, const Spectrum& spectrum,
-                             double low_m, double high_m) {
+// A spectral line that is narrow compared with the steps is treated as one wavelength.
+BandFraction fraction_of(const QuantumEfficiency& efficiency, const Spectrum& spectrum,
+                         double low_m, double high_m) {
   BandFraction fraction;
   fraction.power = band_fractions(spectrum, Bands{{low_m, high_m}})[0];
+  if (spectrum.shape == Spectrum::Shape::gaussian && spectrum.fwhm_m < 2 * step_m) {
+    fraction.current_A_W = fraction.power * responsivity_A_W(efficiency, spectrum.centre_m);
+    return fraction;
+  }
   // Outside the table nothing is converted.
   const double from_m = std::max(low_m, efficiency.wavelength_m.front());
   const double to_m = std::min(high_m, efficiency.wavelength_m.back());
@@ -45,13 +43,6 @@ BandFraction smooth_fraction(const QuantumEfficiency& efficiency, const Spectrum
     }
   }
   return fraction;
-}
-
-BandFraction fraction_of(const QuantumEfficiency& efficiency, const Spectrum& spectrum,
-                         double low_m, double high_m) {
-  const bool line = spectrum.shape == Spectrum::Shape::gaussian && spectrum.fwhm_m < 2 * step_m;
-  return line ? line_fraction(efficiency, spectrum, low_m, high_m)
-              : smooth_fraction(efficiency, spectrum, low_m, high_m);
 }
 
 std::string name_of(const Spectrum& spectrum) {

@@ -9,6 +9,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/median.h"
 #include "core/numerics/order.h"
 #include "photovoltaics/fit/parts.h"
 
@@ -155,13 +156,12 @@ inference::ResidualFunction residuals_of(const Task& task) {
 inference::Parameters parameters_from(const Task& task, const VectorXd& at) {
   const VectorXd s = at.tail(Index{shared_count});
   inference::Parameters all;
-  all.shared = {
-      {"gap", "eV", s[gap], silicon_gap_eV, task.fits_gap ? inference::infinity : 1e-9, 0.1, 5.0},
-      {"saturation", "ln A", s[saturation]},
-      {"n V_t", "ln V", s[scale]},
-      {"series", "ln ohm", s[series]},
-      {"shunt", "ln S", s[shunt]},
-      {"dark", "", s[dark], s[dark], inference::infinity, 0.0, task.shunt_exponent()}};
+  const SweepEnds ends = sweep_ends(task.curves[0].sweep);
+  all.shared = diode_parameters(s, saturation, ends.open_circuit_V / ends.short_circuit_A);
+  all.shared.insert(all.shared.begin(), {"gap", "eV", s[gap], silicon_gap_eV,
+                                         task.fits_gap ? inference::infinity : 1e-9, 0.1, 5.0});
+  all.shared.push_back(
+      {"dark", "", s[dark], s[dark], inference::infinity, 0.0, task.shunt_exponent()});
   constexpr double held = 1e-9;
   if (task.law != ShuntLaw::exponential) all.shared[dark].sigma = held;
   for (inference::Parameter& p : all.shared) {
@@ -169,9 +169,6 @@ inference::Parameters parameters_from(const Task& task, const VectorXd& at) {
     p.mean = p.value;
     p.sigma = held;
   }
-  const SweepEnds ends = sweep_ends(task.curves[0].sweep);
-  bound_resistances(ends.open_circuit_V / ends.short_circuit_A, all.shared[series],
-                    all.shared[shunt]);
   for (size_t k = 0; k < task.curves.size(); ++k) {
     all.of_run.push_back({{"photocurrent", "ln A", at[static_cast<Index>(k)]}});
   }
@@ -216,30 +213,33 @@ double relative_squares(const Task& task, Index run, const VectorXd& at) {
   return sum / (c.photocurrent_A * c.photocurrent_A);
 }
 
-inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierReading>& outliers) {
-  inference::Fit fit = fit_rounds(task, start, 4);
-  for (int round = 0; round < 4 && std::isfinite(fit.chi2); ++round) {
-    std::vector<std::vector<double>> off;
-    for (size_t k = 0; k < task.curves.size(); ++k) {
-      const auto run = static_cast<Index>(k);
-      const Circuit c = circuit_of(task, run, values_of(fit.at, run));
-      const CellCurve cell = c.cell();
-      const IvSweep& sweep = task.curves[k].sweep;
-      off.emplace_back();
-      for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-        const Reading r = reading_of(c, cell, sweep, i);
-        const double error_A =
-            std::hypot(task.noise.current_fraction * c.photocurrent_A,
-                       task.noise.voltage_fraction * sweep.voltage_V[i] * r.slope_S);
-        off.back().push_back(std::abs(sweep.current_A[i] - r.current_A) / error_A);
-      }
+// Distance of each reading from its curve, in units of its error.
+Deviations off_curves(const Task& task, const VectorXd& at) {
+  Deviations off;
+  for (size_t k = 0; k < task.curves.size(); ++k) {
+    const auto run = static_cast<Index>(k);
+    const Circuit c = circuit_of(task, run, values_of(at, run));
+    const CellCurve cell = c.cell();
+    const IvSweep& sweep = task.curves[k].sweep;
+    off.emplace_back();
+    for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+      const Reading r = reading_of(c, cell, sweep, i);
+      const double error_A =
+          std::hypot(task.noise.current_fraction * c.photocurrent_A,
+                     task.noise.voltage_fraction * sweep.voltage_V[i] * r.slope_S);
+      off.back().push_back(std::abs(sweep.current_A[i] - r.current_A) / error_A);
     }
-    std::vector<IvSweep*> sweeps;
-    for (CurveAt& curve : task.curves) sweeps.push_back(&curve.sweep);
-    if (!take_outliers(sweeps, off, outliers)) break;
-    for (const CurveAt& curve : task.curves) check_sweep(curve.sweep);
-    fit = fit_rounds(task, fit.at, 4);
   }
+  return off;
+}
+
+inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierReading>& outliers) {
+  std::vector<IvSweep*> sweeps;
+  for (CurveAt& curve : task.curves) sweeps.push_back(&curve.sweep);
+  const auto refit = [&](const VectorXd& at) { return fit_rounds(task, at, 4); };
+  const inference::Fit fit = refit_without_outliers(
+      refit(start), sweeps, [&](const VectorXd& at) { return off_curves(task, at); }, refit,
+      outliers);
   // Residuals far beyond the noise are errors of the model, which have one size at all voltages.
   constexpr double far = 3.0;
   task.variance = fit.variance();
@@ -347,10 +347,7 @@ ConditionsFit described(const Task& task, const inference::Fit& fit,
   result.outliers = std::move(outliers);
   result.shunt_law = task.law;
   const Circuit first = circuit_of(task, 0, values_of(at, 0));
-  result.diode.photocurrent_A = exponential(at[0], error[0]);
-  result.diode.saturation_A = exponential(s[saturation], e[saturation]);
-  result.diode.scale_V = exponential(s[scale], e[scale]);
-  result.diode.series_ohm = exponential(s[series], e[series]);
+  result.diode = diode_at(exponential(at[0], error[0]), s, e, saturation);
   result.diode.shunt_ohm = {1.0 / first.shunt_S, e[shunt] / first.shunt_S};
   result.model.reference = result.diode.parameters(task.reference_K);
   if (task.law != ShuntLaw::constant) {
@@ -420,13 +417,9 @@ std::vector<CurveAt> described_curves(std::span<const CurveAt> curves, const Swe
     return some;
   };
   if (!may_omit) return by_light();
-  const auto median = [](std::vector<double> values) {
-    std::ranges::sort(values);
-    return values[values.size() / 2];
-  };
   constexpr double least = 0.005, far = 2.5;
-  const double rms_limit = std::max(2.0 * least, far * median(rms));
-  const double scatter_limit = far * median(scatter), usual_ideality = median(ideality);
+  const double rms_limit = std::max(2.0 * least, far * upper_median(rms));
+  const double scatter_limit = far * upper_median(scatter), usual_ideality = upper_median(ideality);
   const auto out = [&](size_t k) {
     return rms[k] > rms_limit || (rms[k] > least && scatter[k] > scatter_limit) ||
            ideality[k] < usual_ideality / far || ideality[k] > usual_ideality * far;

@@ -3,18 +3,13 @@
 #include <array>
 #include <cmath>
 
+#include "core/numerics/median.h"
 #include "core/numerics/order.h"
 #include "photovoltaics/fit/curve_text.h"
 
 namespace photorque {
 namespace curve_cleaning {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 // Order of the readings: by rising voltage, and at equal voltage by falling current.
 std::vector<size_t> order_of(const IvSweep& sweep) {
@@ -170,9 +165,9 @@ CurveCleaning clean_curve(IvSweep& sweep) {
     // A point of the falling curve that the band reached does not belong to the tail.
     std::vector<double> tail;
     for (size_t k = first; k < order.size(); ++k) tail.push_back(amperes(k));
-    const double usual_A = median(tail);
+    const double usual_A = upper_median(tail);
     for (double& one : tail) one = std::abs(one - usual_A);
-    const double around_A = std::max(5.0 * median(tail), 2e-3 * scale_A);
+    const double around_A = std::max(5.0 * upper_median(tail), 2e-3 * scale_A);
     std::vector<char> out(order.size(), 0);
     for (size_t k = first; k < order.size(); ++k) {
       if (cleaning.clipped == 0 && std::abs(amperes(k) - usual_A) > around_A) continue;

@@ -51,11 +51,8 @@ std::vector<std::string_view> split_header(std::string_view line, char separator
 
 // Marks of a missing reading, also those of SCPI instruments for overflow and no number.
 bool is_missing(std::string_view cell) {
-  const std::string text = lower_case(cell);
-  for (const std::string_view mark : {"", "nan", "na", "n/a", "inf", "+inf", "-inf", "ol", "-ol",
-                                      "overload", "--", "-", "null"}) {
-    if (text == mark) return true;
-  }
+  constexpr std::string_view marks = "nan,na,n/a,inf,+inf,-inf,ol,-ol,overload,--,-,null";
+  if (cell.empty() || is_one_of(lower_case(cell), marks)) return true;
   const auto value = number_in(cell);
   return value && std::abs(*value) > 1e30;
 }
@@ -136,18 +133,16 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
 // Whether all columns of a header belong to a curve. A log of a motor, for example, has further
 // columns.
 bool is_of_curve(std::string_view line, const Header& header) {
-  static constexpr std::string_view beside[] = {
-      "power", "p",     "leistung", "puissance", "potencia", "potenza", "time",
-      "zeit",  "temps", "tiempo",   "tempo",     "date",     "index",   "point",
-      "no",    "nr",    "number",   "id",        "rep",      "/",       "in",
-      "watts", "watt",  "run",      "direction", "status",   "stat",    "res"};
+  constexpr std::string_view beside =
+      "power,p,leistung,puissance,potencia,potenza,time,zeit,temps,tiempo,tempo,date,index,point,"
+      "no,nr,number,id,rep,/,in,watts,watt,run,direction,status,stat,res";
   for (const std::string_view cell : split_header(line, header.separator)) {
     std::string text = lower_case(unquoted(cell));
     if (text.empty() || named(text).column != columns) continue;
     std::ranges::replace(text, '_', ' ');
     text = text.substr(0, text.find_first_of(" ([/.", 1));
     if (text.starts_with('[') || text.starts_with('(')) continue;
-    if (std::ranges::find(beside, text) == std::end(beside)) return false;
+    if (!is_one_of(text, beside)) return false;
   }
   return true;
 }
@@ -170,18 +165,17 @@ void find_rates(IvSweep& sweep, std::vector<double> time_s) {
 
 // Reverses the currents of a curve whose current is counted into the device.
 bool reverse_negative(IvSweep& sweep) {
-  double nearest_V = 1e300, short_circuit_A = 0.0, highest_V = -1e300, last_A = 0.0;
-  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-    if (std::abs(sweep.voltage_V[i]) < nearest_V) {
-      nearest_V = std::abs(sweep.voltage_V[i]);
-      short_circuit_A = sweep.current_A[i];
-    }
-    if (sweep.voltage_V[i] > highest_V) {
-      highest_V = sweep.voltage_V[i];
-      last_A = sweep.current_A[i];
-    }
+  const std::vector<double>& voltage_V = sweep.voltage_V;
+  if (voltage_V.empty()) return false;
+  const auto current_at = [&](auto reading) {
+    return sweep.current_A[static_cast<size_t>(reading - voltage_V.begin())];
+  };
+  const auto highest = std::ranges::max_element(voltage_V);
+  const double short_circuit_A =
+      current_at(std::ranges::min_element(voltage_V, {}, [](double v) { return std::abs(v); }));
+  if (!(short_circuit_A < 0.0 && *highest > 0.0 && current_at(highest) > 0.5 * short_circuit_A)) {
+    return false;
   }
-  if (!(short_circuit_A < 0.0 && highest_V > 0.0 && last_A > 0.5 * short_circuit_A)) return false;
   for (double& current : sweep.current_A) current = -current;
   return true;
 }

@@ -1,9 +1,9 @@
 #include "photovoltaics/fit/curve_words.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/text/parse.h"
 
@@ -12,156 +12,58 @@ namespace {
 
 constexpr double zero_celsius_K = 273.15;
 
-std::span<const Unit> units_of(Column column) {
-  static constexpr std::array<Unit, 4> volts = {
-      {{"v", 1.0, 0.0}, {"mv", 1e-3, 0.0}, {"volts", 1.0, 0.0}, {"volt", 1.0, 0.0}}};
-  // A density is the current of 1 cm².
-  static constexpr std::array<Unit, 12> amperes = {{{"a", 1.0, 0.0},
-                                                    {"ma", 1e-3, 0.0},
-                                                    {"ua", 1e-6, 0.0},
-                                                    {"µa", 1e-6, 0.0},
-                                                    {"μa", 1e-6, 0.0},
-                                                    {"amps", 1.0, 0.0},
-                                                    {"amp", 1.0, 0.0},
-                                                    {"ma/cm2", 1e-3, 0.0},
-                                                    {"ma/cm^2", 1e-3, 0.0},
-                                                    {"ma/cm²", 1e-3, 0.0},
-                                                    {"a/cm2", 1.0, 0.0},
-                                                    {"a/m2", 1e-4, 0.0}}};
-  static constexpr std::array<Unit, 5> seconds = {{{"s", 1.0, 0.0},
-                                                   {"sec", 1.0, 0.0},
-                                                   {"seconds", 1.0, 0.0},
-                                                   {"ms", 1e-3, 0.0},
-                                                   {"min", 60.0, 0.0}}};
-  static constexpr std::array<Unit, 9> irradiances = {{{"w_m2", 1.0, 0.0},
-                                                       {"w/m2", 1.0, 0.0},
-                                                       {"w/m^2", 1.0, 0.0},
-                                                       {"w/m²", 1.0, 0.0},
-                                                       {"wm-2", 1.0, 0.0},
-                                                       {"kw/m2", 1e3, 0.0},
-                                                       {"suns", 1e3, 0.0},
-                                                       {"mw/cm2", 10.0, 0.0},
-                                                       {"mw/cm²", 10.0, 0.0}}};
-  static constexpr std::array<Unit, 7> temperatures = {{{"k", 1.0, 0.0},
-                                                        {"c", 1.0, zero_celsius_K},
-                                                        {"°c", 1.0, zero_celsius_K},
-                                                        {"degc", 1.0, zero_celsius_K},
-                                                        {"deg c", 1.0, zero_celsius_K},
-                                                        {"celsius", 1.0, zero_celsius_K},
-                                                        {"kelvin", 1.0, 0.0}}};
-  switch (column) {
-    case voltage:
-      return volts;
-    case current:
-      return amperes;
-    case irradiance:
-      return irradiances;
-    case temperature:
-      return temperatures;
-    case time:
-      return seconds;
-    default:
-      return {};
-  }
-}
+// Names of one unit, separated by commas, in small letters.
+struct UnitNames {
+  Column column;
+  std::string_view names;
+  double to_SI, offset = 0.0;
+};
 
-// Names of a column in English, German, French, Spanish, Italian, Portuguese, Dutch, Polish, Czech,
-// Swedish, Russian, Chinese and Japanese, in small letters.
-std::span<const std::string_view> names_of(Column column) {
-  static constexpr std::string_view voltages[] = {
-      "voltage",        "volts",    "volt",       "v",        "u",
-      "module voltage", "spannung", "tension",    "tensión",  "voltaje",
-      "tensione",       "tensão",   "tensao",     "spanning", "napięcie",
-      "napětí",         "spänning", "напряжение", "电压",     "電圧"};
-  static constexpr std::string_view currents[] = {"current",
-                                                  "amps",
-                                                  "amp",
-                                                  "amperes",
-                                                  "ampere",
-                                                  "i",
-                                                  "module current",
-                                                  "curr",
-                                                  "j",
-                                                  "current density",
-                                                  "stromdichte",
-                                                  "strom",
-                                                  "stromstärke",
-                                                  "courant",
-                                                  "intensité",
-                                                  "corriente",
-                                                  "corrente",
-                                                  "stroom",
-                                                  "prąd",
-                                                  "proud",
-                                                  "ström",
-                                                  "ток",
-                                                  "电流",
-                                                  "電流"};
-  static constexpr std::string_view irradiances[] = {"irradiance",
-                                                     "g",
-                                                     "poa",
-                                                     "plane of array irradiance",
-                                                     "irr",
-                                                     "irrad",
-                                                     "eeff",
-                                                     "e eff",
-                                                     "mean irradiance",
-                                                     "poa irradiance",
-                                                     "einstrahlung",
-                                                     "bestrahlungsstärke",
-                                                     "éclairement",
-                                                     "irradiancia",
-                                                     "irraggiamento",
-                                                     "irradiância"};
-  static constexpr std::string_view temperatures[] = {"temperature",
-                                                      "temp",
-                                                      "t",
-                                                      "cell temperature",
-                                                      "module temperature",
-                                                      "t cell",
-                                                      "tcell",
-                                                      "cell temp",
-                                                      "module temp",
-                                                      "tmod",
-                                                      "tdut",
-                                                      "t dut",
-                                                      "t mod",
-                                                      "t module",
-                                                      "temperatur",
-                                                      "zelltemperatur",
-                                                      "modultemperatur",
-                                                      "température",
-                                                      "temperatura",
-                                                      "temperatuur"};
-  static constexpr std::string_view numbers[] = {"sweep", "curve"};
-  static constexpr std::string_view times[] = {"time", "relative time", "elapsed time", "zeit"};
-  switch (column) {
-    case voltage:
-      return voltages;
-    case current:
-      return currents;
-    case irradiance:
-      return irradiances;
-    case temperature:
-      return temperatures;
-    case time:
-      return times;
-    default:
-      return numbers;
-  }
-}
+// A current density is the current of 1 cm².
+constexpr UnitNames units[] = {
+    {voltage, "v,volts,volt", 1.0},
+    {voltage, "mv", 1e-3},
+    {current, "a,amps,amp,a/cm2", 1.0},
+    {current, "ma,ma/cm2,ma/cm^2,ma/cm²", 1e-3},
+    {current, "ua,µa,μa", 1e-6},
+    {current, "a/m2", 1e-4},
+    {irradiance, "w_m2,w/m2,w/m^2,w/m²,wm-2", 1.0},
+    {irradiance, "kw/m2,suns", 1e3},
+    {irradiance, "mw/cm2,mw/cm²", 10.0},
+    {temperature, "k,kelvin", 1.0},
+    {temperature, "c,°c,degc,deg c,celsius", 1.0, zero_celsius_K},
+    {time, "s,sec,seconds", 1.0},
+    {time, "ms", 1e-3},
+    {time, "min", 60.0},
+};
 
-bool is_one_of(std::string_view text, std::span<const std::string_view> words) {
-  return std::ranges::find(words, text) != words.end();
-}
+// Names of the columns, separated by commas, in English, German, French, Spanish, Italian,
+// Portuguese, Dutch, Polish, Czech, Swedish, Russian, Chinese and Japanese, in small letters.
+constexpr std::pair<Column, std::string_view> names[] = {
+    {voltage,
+     "voltage,volts,volt,v,u,module voltage,spannung,tension,tensión,voltaje,tensione,tensão,"
+     "tensao,spanning,napięcie,napětí,spänning,напряжение,电压,電圧"},
+    {current,
+     "current,amps,amp,amperes,ampere,i,module current,curr,j,current density,stromdichte,strom,"
+     "stromstärke,courant,intensité,corriente,corrente,stroom,prąd,proud,ström,ток,电流,電流"},
+    {irradiance,
+     "irradiance,g,poa,plane of array irradiance,irr,irrad,eeff,e eff,mean irradiance,"
+     "poa irradiance,einstrahlung,bestrahlungsstärke,éclairement,irradiancia,irraggiamento,"
+     "irradiância"},
+    {temperature,
+     "temperature,temp,t,cell temperature,module temperature,t cell,tcell,cell temp,module temp,"
+     "tmod,tdut,t dut,t mod,t module,temperatur,zelltemperatur,modultemperatur,température,"
+     "temperatura,temperatuur"},
+    {curve_number, "sweep,curve"},
+    {time, "time,relative time,elapsed time,zeit"},
+};
 
 // Whether a word may qualify a voltage or current of the device. Words for single points ("V_oc",
 // "I_mp") are excluded.
 bool is_qualifier(std::string_view word) {
-  static constexpr std::string_view known[] = {
-      "mod",   "module",   "cell",  "meas", "measured", "corr",  "corrected", "pv",
-      "dut",   "device",   "raw",   "dc",   "smu",      "stc",   "anode",     "channel",
-      "panel", "terminal", "sense", "mess", "modul",    "zelle", "ch",        "sample"};
+  constexpr std::string_view known =
+      "mod,module,cell,meas,measured,corr,corrected,pv,dut,device,raw,dc,smu,stc,anode,channel,"
+      "panel,terminal,sense,mess,modul,zelle,ch,sample";
   while (!word.empty() && std::isdigit(static_cast<unsigned char>(word.back()))) {
     word.remove_suffix(1);
   }
@@ -189,8 +91,9 @@ Named qualified(const std::string& cell) {
     if (found.column != columns && !found.unit) found.unit = unit_named(found.column, word);
     if (found.unit) continue;
     Column of_word = joined_symbol(word);
-    for (const Column column : {voltage, current}) {
-      if (is_one_of(word, names_of(column))) of_word = column;
+    for (const auto& [column, list] : names) {
+      const bool needed = column == voltage || column == current;
+      if (needed && is_one_of(word, list)) of_word = column;
     }
     if (of_word == columns && is_qualifier(word)) continue;
     if (of_word == columns || found.column != columns) return {};
@@ -201,8 +104,8 @@ Named qualified(const std::string& cell) {
 
 Named named_without_brackets(std::string cell) {
   if (cell.ends_with('.')) cell.pop_back();  // "Temp."
-  for (const Column column : {voltage, current, irradiance, temperature, curve_number, time}) {
-    for (const std::string_view name : names_of(column)) {
+  for (const auto& [column, list] : names) {
+    for (const std::string_view name : cells_of(list)) {
       std::string text = cell;
       std::ranges::replace(text, '_', ' ');
       if (text == name) return {column, {}, {}};
@@ -227,9 +130,16 @@ Named named_without_brackets(std::string cell) {
 
 }  // namespace
 
+bool is_one_of(std::string_view text, std::string_view list) {
+  return std::ranges::count(cells_of(list), text) > 0;
+}
+
 std::optional<Unit> unit_named(Column column, std::string_view name) {
-  for (const Unit& unit : units_of(column)) {
-    if (unit.name == name) return unit;
+  for (const UnitNames& unit : units) {
+    if (unit.column != column) continue;
+    const std::vector<std::string_view> known = cells_of(unit.names);
+    const auto found = std::ranges::find(known, name);
+    if (found != known.end()) return Unit{*found, unit.to_SI, unit.offset};
   }
   return std::nullopt;
 }

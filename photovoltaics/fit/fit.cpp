@@ -94,12 +94,9 @@ MatrixXd covariance_root(const IvSweep& sweep, const SweepNoise& noise, const Ve
 }
 
 std::vector<inference::Parameter> parameters_from(const VectorXd& x, const SweepEnds& ends) {
-  std::vector<inference::Parameter> all = {{"photocurrent", "A", x[light]},
-                                           {"saturation", "ln A", x[saturation]},
-                                           {"n V_t", "ln V", x[scale]},
-                                           {"series", "ln ohm", x[series]},
-                                           {"shunt", "ln S", x[shunt]}};
-  bound_resistances(ends.open_circuit_V / ends.short_circuit_A, all[series], all[shunt]);
+  std::vector<inference::Parameter> all =
+      diode_parameters(x, saturation, ends.open_circuit_V / ends.short_circuit_A);
+  all.insert(all.begin(), {"photocurrent", "A", x[light]});
   if (x.size() > count) all.push_back({"storage", "s", x[storage]});
   return all;
 }
@@ -176,10 +173,9 @@ VectorXd start_from(const IvSweep& sweep, const SweepNoise& noise) {
 }
 
 // Distance of each reading from the curve, in units of its error.
-std::vector<std::vector<double>> off_curve(std::span<const IvSweep> sweeps, const SweepNoise& noise,
-                                           const VectorXd& x) {
+Deviations off_curve(std::span<const IvSweep> sweeps, const SweepNoise& noise, const VectorXd& x) {
   const CellCurve cell = circuit(x);
-  std::vector<std::vector<double>> off(sweeps.size());
+  Deviations off(sweeps.size());
   for (size_t s = 0; s < sweeps.size(); ++s) {
     for (size_t i = 0; i < sweeps[s].voltage_V.size(); ++i) {
       const double v = sweeps[s].voltage_V[i];
@@ -249,15 +245,11 @@ inference::Fit best_fit(std::vector<IvSweep>& sweeps, const SweepNoise& noise,
     const inference::Fit stored = fit_rounds(sweeps, noise, start, 6);
     return std::isfinite(stored.chi2) && storage_of(sweeps, stored) ? stored : fit;
   };
-  inference::Fit best = fitted();
-  for (int round = 0; round < 4 && std::isfinite(best.chi2); ++round) {
-    std::vector<IvSweep*> changed;
-    for (IvSweep& sweep : sweeps) changed.push_back(&sweep);
-    if (!take_outliers(changed, off_curve(sweeps, noise, best.at), outliers)) break;
-    for (const IvSweep& sweep : sweeps) check_sweep(sweep);
-    best = fitted();
-  }
-  return best;
+  std::vector<IvSweep*> changed;
+  for (IvSweep& sweep : sweeps) changed.push_back(&sweep);
+  return refit_without_outliers(
+      fitted(), changed, [&](const VectorXd& at) { return off_curve(sweeps, noise, at); },
+      [&](const VectorXd&) { return fitted(); }, outliers);
 }
 
 }  // namespace
@@ -291,11 +283,7 @@ SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise) {
   const VectorXd& x = best.at;
   result.variance = best.variance();
   const VectorXd error = best.scatter_errors();
-  result.diode = {{x[light], error[light]},
-                  exponential(x[saturation], error[saturation]),
-                  exponential(x[scale], error[scale]),
-                  exponential(x[series], error[series]),
-                  exponential(-x[shunt], error[shunt])};
+  result.diode = diode_at({x[light], error[light]}, x, error, saturation);
   const std::vector<MatrixXd> roots = covariance_roots(sweeps, noise, x);
   const inference::Fit settled = fit_round(sweeps, roots, x);
   limit_resistances(settled, whitened(sweeps, roots), series, shunt, settled.variance(),

@@ -258,16 +258,10 @@ ListedModule of_pan(const Listing& pan) {
 RatedPoint ListedModule::predict(double irradiance_W_m2, double temperature_K) const {
   const double light_A = photocurrent_A * irradiance_W_m2 / rated.irradiance_W_m2 *
                          photocurrent_factor(cell, temperature_K);
-  const CellCurve curve(
-      in_light(parameters_at(cell, cell.reference_area_m2, temperature_K), light_A));
-  const CellOperatingPoint best = curve.maximum_power(light_A);
-  const double series = cells_in_series, parallel = strings;
-  return {irradiance_W_m2,
-          temperature_K,
-          parallel * curve.short_circuit_A(light_A),
-          series * curve.open_circuit_V(light_A),
-          parallel * best.current_A,
-          series * best.voltage_V};
+  RatedPoint point = rated_point_of(cell, light_A, irradiance_W_m2, temperature_K);
+  for (double* current_A : {&point.short_circuit_A, &point.maximum_A}) *current_A *= strings;
+  for (double* voltage_V : {&point.open_circuit_V, &point.maximum_V}) *voltage_V *= cells_in_series;
+  return point;
 }
 
 ListedModule module_in(std::string_view text, const std::string& file, const std::string& name) {

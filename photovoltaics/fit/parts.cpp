@@ -8,6 +8,8 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/median.h"
+#include "core/numerics/root.h"
 
 namespace photorque {
 
@@ -32,16 +34,13 @@ double gap_of_voltage_slope_eV(const CellModel& model, double light_A, double gr
   constexpr double step_K = 10.0;
   const double temperature_K = model.reference.temperature_K;
   const double wanted_V = CellCurve(model.reference).open_circuit_V(light_A) + step_K * slope_V_K;
-  double low = 0.01, high = 20.0;
-  for (int i = 0; i < 60; ++i) {
+  const auto is_below = [&](double gap_eV) {
     CellModel trial = model;
-    trial.gap_eV = std::midpoint(low, high);
-    const double v =
-        CellCurve(parameters_at(trial, model.reference_area_m2, temperature_K + step_K))
-            .open_circuit_V(light_A * (1.0 + step_K * growth_1_K));
-    (v > wanted_V ? low : high) = trial.gap_eV;
-  }
-  return std::midpoint(low, high);
+    trial.gap_eV = gap_eV;
+    return CellCurve(parameters_at(trial, model.reference_area_m2, temperature_K + step_K))
+               .open_circuit_V(light_A * (1.0 + step_K * growth_1_K)) > wanted_V;
+  };
+  return bisect(0.01, 20.0, is_below, {60}).middle();
 }
 
 void check_sweep(const IvSweep& sweep) {
@@ -180,11 +179,34 @@ std::optional<double> upper_limit(const inference::Fit& best,
   return inside;
 }
 
-void bound_resistances(double ohm, inference::Parameter& series, inference::Parameter& shunt) {
+std::vector<inference::Parameter> diode_parameters(const VectorXd& x, Index first, double ohm) {
+  std::vector<inference::Parameter> all = {{"saturation", "ln A", x[first]},
+                                           {"n V_t", "ln V", x[first + 1]},
+                                           {"series", "ln ohm", x[first + 2]},
+                                           {"shunt", "ln S", x[first + 3]}};
+  inference::Parameter &series = all[2], &shunt = all[3];
   series.lowest = std::log(least_resistance_part * ohm);
   series.highest = std::log(most_resistance_part * ohm);
   shunt.lowest = -std::log(most_resistance_part * ohm);
   shunt.highest = -std::log(least_resistance_part * ohm);
+  return all;
+}
+
+SingleDiode diode_at(const Estimate& photocurrent_A, const VectorXd& x, const VectorXd& error,
+                     Index first) {
+  return {photocurrent_A, exponential(x[first], error[first]),
+          exponential(x[first + 1], error[first + 1]), exponential(x[first + 2], error[first + 2]),
+          exponential(-x[first + 3], error[first + 3])};
+}
+
+RatedPoint rated_point_of(const CellModel& model, double light_A, double irradiance_W_m2,
+                          double temperature_K) {
+  const CellCurve cell(
+      in_light(parameters_at(model, model.reference_area_m2, temperature_K), light_A));
+  const CellOperatingPoint best = cell.maximum_power(light_A);
+  return {
+      irradiance_W_m2, temperature_K, cell.short_circuit_A(light_A), cell.open_circuit_V(light_A),
+      best.current_A,  best.voltage_V};
 }
 
 void limit_resistances(const inference::Fit& best, const inference::ResidualFunction& residuals,
@@ -219,15 +241,16 @@ std::vector<NamedBound> resistance_bounds(Index series, Index shunt) {
            "the leak explains all of the curve: this is no lit cell"}};
 }
 
-bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vector<double>>& off,
+namespace {
+
+// One round of refit_without_outliers(): returns whether there were outliers.
+bool take_outliers(std::span<IvSweep* const> sweeps, const Deviations& off,
                    std::vector<OutlierReading>& taken) {
   constexpr double far = 8.0, most = 0.1;
   std::vector<double> all;
   for (const std::vector<double>& one : off) all.insert(all.end(), one.begin(), one.end());
-  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-  std::ranges::nth_element(all, middle);
   constexpr double of_median = 1.4826;  // a normal variable's standard deviation
-  const double limit = far * std::max(1.0, of_median * *middle);
+  const double limit = far * std::max(1.0, of_median * upper_median(all));
   // More than two in a row are a part of the curve, for example a step due to a shadow.
   constexpr size_t longest = 2;
   std::vector<std::vector<char>> is_out(sweeps.size());
@@ -250,6 +273,20 @@ bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vect
   }
   taken.insert(taken.end(), found.begin(), found.end());
   return true;
+}
+
+}  // namespace
+
+inference::Fit refit_without_outliers(inference::Fit fit, std::span<IvSweep* const> sweeps,
+                                      const std::function<Deviations(const VectorXd&)>& off,
+                                      const std::function<inference::Fit(const VectorXd&)>& refit,
+                                      std::vector<OutlierReading>& taken) {
+  for (int round = 0; round < 4 && std::isfinite(fit.chi2); ++round) {
+    if (!take_outliers(sweeps, off(fit.at), taken)) break;
+    for (const IvSweep* sweep : sweeps) check_sweep(*sweep);
+    fit = refit(fit.at);
+  }
+  return fit;
 }
 
 }  // namespace photorque

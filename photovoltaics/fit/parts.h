@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -65,9 +66,18 @@ std::optional<double> upper_limit(const inference::Fit& best,
                                   const inference::ResidualFunction& residuals, Eigen::Index k,
                                   double variance);
 
-// Keeps logarithms of a series resistance and of a leak's conductance within those parts of
-// `ohm`, V_oc/I_sc of the device.
-void bound_resistances(double ohm, inference::Parameter& series, inference::Parameter& shunt);
+// The logarithms of I₀, n V_t, R_s and 1/R_sh, which are x[first] and the three elements after it,
+// as parameters of a fit. Both resistances are kept within those parts of `ohm`, V_oc/I_sc of the
+// device.
+std::vector<inference::Parameter> diode_parameters(const Eigen::VectorXd& x, Eigen::Index first,
+                                                   double ohm);
+// The diode of these four parameters, with their standard errors.
+SingleDiode diode_at(const Estimate& photocurrent_A, const Eigen::VectorXd& x,
+                     const Eigen::VectorXd& error, Eigen::Index first);
+
+// Values of a device at its model's reference area, at a photocurrent.
+RatedPoint rated_point_of(const CellModel& model, double light_A, double irradiance_W_m2,
+                          double temperature_K);
 
 // Sets the limits of `diode` for resistances that the fit does not determine.
 void limit_resistances(const inference::Fit& best, const inference::ResidualFunction& residuals,
@@ -86,12 +96,16 @@ struct NamedBound {
 std::vector<BoundReached> bounds_reached(const inference::Fit& best,
                                          std::span<const NamedBound> named, Eigen::Index first = 0);
 
-// Removes readings from sweeps that errors do not explain, and returns whether there were any.
-// `off`: deviation of each reading from its curve in units of its error. Many such readings, or
-// more than two in a row, are not accidental: then the curve is not that of a diode, and they are
-// kept.
-bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vector<double>>& off,
-                   std::vector<OutlierReading>& taken);
+// Deviation of each reading of some sweeps from its curve, in units of its error.
+using Deviations = std::vector<std::vector<double>>;
+// Moves readings that errors do not explain from the sweeps to `taken`, and refits, until there are
+// none. `off`: the deviations at a point of the fit. Many such readings, or more than two in a row,
+// are not accidental: then the curve is not that of a diode, and they are kept.
+inference::Fit refit_without_outliers(
+    inference::Fit fit, std::span<IvSweep* const> sweeps,
+    const std::function<Deviations(const Eigen::VectorXd& at)>& off,
+    const std::function<inference::Fit(const Eigen::VectorXd& start)>& refit,
+    std::vector<OutlierReading>& taken);
 
 // Bounds of the two resistances in every fit.
 std::vector<NamedBound> resistance_bounds(Eigen::Index series, Eigen::Index shunt);

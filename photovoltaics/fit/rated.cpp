@@ -104,12 +104,7 @@ VectorXd relative_errors(const Figures& figures, const VectorXd& x) {
 
 std::vector<inference::Parameter> parameters_from(const VectorXd& start,
                                                   std::span<const RatedPoint> points) {
-  std::vector<inference::Parameter> all = {{"saturation", "ln A", start[saturation]},
-                                           {"n V_t", "ln V", start[scale]},
-                                           {"series", "ln ohm", start[series]},
-                                           {"shunt", "ln S", start[shunt]}};
-  bound_resistances(points[0].open_circuit_V / points[0].short_circuit_A, all[series], all[shunt]);
-  return all;
+  return diode_parameters(start, saturation, points[0].open_circuit_V / points[0].short_circuit_A);
 }
 
 inference::Fit fit_from(const VectorXd& start, const Figures& figures, double guess_V) {
@@ -180,11 +175,7 @@ RatedFit described(const VectorXd& x, const Figures& figures, const TemperatureS
   const RatedPoint& first = figures.points[0];
   RatedFit result;
   result.shunt_law = figures.law;
-  result.diode = {{0.0, 0.0},
-                  exponential(x[saturation], 0.0),
-                  exponential(x[scale], 0.0),
-                  exponential(x[series], 0.0),
-                  exponential(-x[shunt], 0.0)};
+  result.diode = diode_at({}, x, VectorXd::Zero(Index{count}), saturation);
   result.model.reference = result.diode.parameters(first.temperature_K);
   const double light_A = CellCurve(result.model.reference).photocurrent_A(first.short_circuit_A);
   result.diode.photocurrent_A = {light_A, 0.0};
@@ -411,11 +402,7 @@ RatedPoint RatedFit::predict(double irradiance_W_m2, double temperature_K) const
   const double light_A = diode.photocurrent_A.value *
                          std::pow(irradiance_W_m2 / first_W_m2, light_exponent) *
                          photocurrent_factor(model, temperature_K);
-  const CellCurve cell(in_light(parameters_at(model, 1.0, temperature_K), light_A));
-  const CellOperatingPoint best = cell.maximum_power(light_A);
-  return {
-      irradiance_W_m2, temperature_K, cell.short_circuit_A(light_A), cell.open_circuit_V(light_A),
-      best.current_A,  best.voltage_V};
+  return rated_point_of(model, light_A, irradiance_W_m2, temperature_K);
 }
 
 }  // namespace photorque

@@ -77,20 +77,16 @@ constexpr double darkest_part = 1e-6;  // fraction of the short-circuit current
 constexpr double least_drop_V = 1e-3, most_drop_V = 5.0;
 
 std::vector<inference::Parameter> parameters_from(const VectorXd& x, const SweepEnds& ends) {
-  std::vector<inference::Parameter> all = {{"saturation", "ln A", x[saturation]},
-                                           {"n V_t", "ln V", x[scale]},
-                                           {"series", "ln ohm", x[series]},
-                                           {"shunt", "ln S", x[shunt]},
-                                           {"bypass drop", "ln V", x[drop]}};
+  const auto substrings = static_cast<double>(x.size() - first_light);
+  std::vector<inference::Parameter> all =
+      diode_parameters(x, saturation, ends.open_circuit_V / substrings / ends.short_circuit_A);
+  all.push_back({"bypass drop", "ln V", x[drop]});
   for (Index k = first_light; k < x.size(); ++k) {
     all.push_back({"photocurrent " + std::to_string(k - first_light + 1), "ln A", x[k]});
     all.back().lowest = std::log(darkest_part * ends.short_circuit_A);
   }
   all[drop].lowest = std::log(least_drop_V);
   all[drop].highest = std::log(most_drop_V);
-  const auto substrings = static_cast<double>(x.size() - first_light);
-  bound_resistances(ends.open_circuit_V / substrings / ends.short_circuit_A, all[series],
-                    all[shunt]);
   return all;
 }
 
@@ -207,9 +203,7 @@ ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoi
     fit.photocurrents_A.push_back(exponential(x[first_light + k], error[first_light + k]));
   }
   std::ranges::sort(fit.photocurrents_A, std::greater<>(), &Estimate::value);
-  fit.substring = {fit.photocurrents_A[0], exponential(x[saturation], error[saturation]),
-                   exponential(x[scale], error[scale]), exponential(x[series], error[series]),
-                   exponential(-x[shunt], error[shunt])};
+  fit.substring = diode_at(fit.photocurrents_A[0], x, error, saturation);
   limit_resistances(best, residuals, series, shunt, best.variance(), fit.substring);
   fit.bounds = bounds_reached(best, named_bounds(substrings));
   fit.bypass_drop_V = exponential(x[drop], error[drop]);

@@ -68,7 +68,6 @@ ArrayCurve::ArrayCurve(const ArrayWiring& wiring, CellTables tables,
   check(wiring, cells_);
   set_photocurrents(photocurrents_A);
   add_strings(wiring, photocurrents_A, changes);
-  if (!by_current()) group_strings();
   for (const StringCurve& string : strings_) switches_.push_back(switches_of(string));
   end_x_ = find_end_x();
 }
@@ -107,17 +106,6 @@ void ArrayCurve::add_strings(const ArrayWiring& wiring, const std::vector<double
   if (is_shorted_) strings_.clear();
 }
 
-void ArrayCurve::group_strings() {
-  fours_ = FourStrings::groups(strings_);
-  std::vector<char> grouped(strings_.size(), 0);
-  for (const FourStrings& four : fours_) {
-    for (const size_t s : four.members()) grouped[s] = 1;
-  }
-  for (size_t s = 0; s < grouped.size(); ++s) {
-    if (grouped[s] == 0) singles_.push_back(s);
-  }
-}
-
 ArrayPoint ArrayCurve::point(double x, double y) const {
   return by_current() ? ArrayPoint{y, x} : ArrayPoint{x - series_ohm_ * y, y};
 }
@@ -142,32 +130,10 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
     node.third = state.third_V_A3;
     return;
   }
-  // Solves four strings at once if possible.
-  const bool cells_too = std::isfinite(tolerance);
-  const auto alone = [&](size_t s, const CurrentGuess& guess) {
+  for (size_t s = 0; s < strings_.size(); ++s) {
+    const CurrentGuess guess = guess_current(s, x, node, low, high);
     strings_[s].at_voltage(x, regimes[s], guess.low_A, guess.high_A, tolerance, node.strings[s]);
-  };
-  for (const FourStrings& four : fours_) {
-    Quad low_A{}, high_A{};
-    for (size_t lane = 0; lane < 4; ++lane) {
-      const size_t s = four.member(lane);
-      const CurrentGuess guess = guess_current(s, x, node, low, high);
-      low_A[lane] = guess.low_A;
-      high_A[lane] = guess.high_A;
-    }
-    bool solved = false;
-    if (x >= 0.0) {
-      FourStrings::State state = four.read(node.strings);
-      solved = four.solve(x, max(low_A, Quad{}), high_A, tolerance, state,
-                          cells_too ? std::span(node.strings) : std::span<StringState>());
-      if (solved) four.write(state, node.strings);
-    }
-    for (size_t i = 0; i < four.members().size(); ++i) {
-      if (solved && four.solves(i, x)) continue;
-      alone(four.member(i), {low_A[i], high_A[i]});
-    }
   }
-  for (const size_t s : singles_) alone(s, guess_current(s, x, node, low, high));
   node.sum_strings();
 }
 
@@ -178,9 +144,8 @@ ArrayCurve::CurrentGuess ArrayCurve::guess_current(size_t s, double x, Node& nod
     state.current_A = hermite_A(low->strings[s], high->strings[s], x);
     return {high->strings[s].current_A, low->strings[s].current_A};
   }
-  const ElementPoint at{state.voltage_V, state.slope_ohm, state.curvature_V_A2, state.third_V_A3};
-  state.current_A =
-      state.slope_ohm > 0.0 ? extrapolated_A(at, state.current_A, x) : strings_[s].first_guess_A();
+  state.current_A = state.slope_ohm > 0.0 ? extrapolated_A(state, state.current_A, x)
+                                          : strings_[s].first_guess_A();
   return {0.0, strings_[s].largest_photocurrent_A()};
 }
 

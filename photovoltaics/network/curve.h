@@ -18,7 +18,6 @@
 
 #include <vector>
 
-#include "photovoltaics/network/four_strings.h"
 #include "photovoltaics/network/string.h"
 
 namespace photorque {
@@ -133,7 +132,6 @@ class ArrayCurve {
   void set_photocurrents(const std::vector<double>& photocurrents_A);
   void add_strings(const ArrayWiring& wiring, const std::vector<double>& photocurrents_A,
                    const ArrayChanges& changes);
-  void group_strings();
   // Moves a node from the end of `last` to the beginning of the next piece, `piece`. Only strings
   // whose diodes switch there are evaluated again.
   void enter(const Piece& piece, const Piece& last, double tolerance, Node& node) const;
@@ -161,8 +159,6 @@ class ArrayCurve {
 
   CellTables tables_;  // the strings point into it
   std::vector<StringCurve> strings_;
-  std::vector<FourStrings> fours_;  // groups of equal strings
-  std::vector<size_t> singles_;     // the others
   std::vector<Switches> switches_;
   size_t cells_ = 0;
   double series_ohm_ = 0.0;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <type_traits>
 
 #include "photovoltaics/cell/diode_voltage.h"
 #include "photovoltaics/network/wiring.h"
@@ -11,13 +10,12 @@
 namespace photorque {
 
 // Derivatives of a falling current–voltage curve at a point. y falls with x: `slope` is −dy/dx ≥ 0,
-// `curvature` d²y/dx² and `third` d³y/dx³; of one curve, or of several in lanes.
-template <class T>
-struct SlopesOf {
-  T slope{}, curvature{}, third{};
+// `curvature` d²y/dx² and `third` d³y/dx³.
+struct Slopes {
+  double slope = 0.0, curvature = 0.0, third = 0.0;
 
   // Joins elements: V(I) in series, I(V) in parallel.
-  SlopesOf& operator+=(const SlopesOf& other) {
+  Slopes& operator+=(const Slopes& other) {
     slope += other.slope;
     curvature += other.curvature;
     third += other.third;
@@ -25,17 +23,12 @@ struct SlopesOf {
   }
 };
 
-using Slopes = SlopesOf<double>;
-
 // Converts V(I) into I(V) or back: d³x/dy³ = (3 y″² − y′ y‴)/y′⁵, the others as below. A slope of ∞
-// (of a blocked string; lanes contain none) becomes 0.
-template <class T>
-SlopesOf<T> inverted(const SlopesOf<T>& s) {
-  const T inverse = 1.0 / s.slope;
-  if constexpr (std::is_same_v<T, double>) {
-    if (inverse == 0.0) return {};
-  }
-  const T cube = inverse * inverse * inverse;
+// (of a blocked string) becomes 0.
+inline Slopes inverted(const Slopes& s) {
+  const double inverse = 1.0 / s.slope;
+  if (inverse == 0.0) return {};
+  const double cube = inverse * inverse * inverse;
   return {inverse, s.curvature * cube,
           -(3.0 * s.curvature * s.curvature * inverse + s.third) * inverse * cube};
 }
@@ -94,6 +87,12 @@ struct ElementPoint {
   }
   Slopes slopes() const { return {slope_ohm, curvature_V_A2, third_V_A3}; }
 };
+
+// V(I) of elements in parallel at their common voltage, from the sum of their I(V).
+inline ElementPoint tied_point(double voltage_V, const Slopes& current) {
+  const Slopes voltage = inverted(current);
+  return {voltage_V, voltage.slope, voltage.curvature, voltage.third};
+}
 
 // One cell at a current of either sign.
 inline ElementPoint cell_at(const LitCell& cell, double current_A, JunctionState& state) {

@@ -177,45 +177,10 @@ class ArrayCurve::Search {
   void add_points_between(const Piece& piece, Node& at) {
     const double width = piece.high_x - piece.low_x;
     const int steps = std::max(1, static_cast<int>(std::ceil(intervals_ * width / curve_.end_x_)));
-    states_.clear();
-    for (const FourStrings& four : curve_.fours_) states_.push_back(four.read(at.strings));
     for (int i = 1; i < steps; ++i) {
-      const double x = piece.low_x + width * i / steps;
-      if (states_.empty()) {
-        curve_.evaluate(x, piece.regimes, at, any);
-      } else {
-        at.x = x;
-        at.y = currents_at(x, piece, at);
-      }
+      curve_.evaluate(piece.low_x + width * i / steps, piece.regimes, at, any);
       add_point(at);
     }
-    for (size_t k = 0; k < states_.size(); ++k) curve_.fours_[k].write(states_[k], at.strings);
-  }
-
-  // Sum of the currents of all strings. The states of groups of four in `at` are not updated.
-  double currents_at(double x, const Piece& piece, Node& at) {
-    double sum_A = 0.0;
-    const auto add_alone = [&](size_t s) {
-      const CurrentGuess guess = curve_.guess_current(s, x, at, nullptr, nullptr);
-      curve_.strings_[s].at_voltage(x, piece.regimes[s], guess.low_A, guess.high_A, any,
-                                    at.strings[s]);
-      sum_A += at.strings[s].current_A;
-    };
-    for (size_t k = 0; k < states_.size(); ++k) {
-      const FourStrings& four = curve_.fours_[k];
-      const bool solved = four.advance(x, states_[k]);
-      if (solved) {
-        sum_A += four.sum_A(states_[k]);
-      } else {
-        four.write(states_[k], at.strings);
-      }
-      for (size_t i = 0; i < four.members().size(); ++i) {
-        if (!solved || !four.solves(i, x)) add_alone(four.member(i));
-      }
-      if (!solved) states_[k] = four.read(at.strings);
-    }
-    for (const size_t s : curve_.singles_) add_alone(s);
-    return sum_A;
   }
 
   void add_point(const Node& node) {
@@ -228,7 +193,6 @@ class ArrayCurve::Search {
   }
 
   const ArrayCurve& curve_;
-  std::vector<FourStrings::State> states_;    // at the last point
   std::vector<std::unique_ptr<Node>> nodes_;  // one per depth: references stay valid
   int intervals_;
   Scan scan_;

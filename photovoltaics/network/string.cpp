@@ -13,18 +13,6 @@ constexpr double max_ohm = 1e90;
 
 }  // namespace
 
-std::optional<PlainString> StringCurve::plain() const {
-  if (parts_.size() != 1 || runs_.size() != 1) return std::nullopt;
-  const Run& run = runs_[0];
-  if (run.offset_V != 0.0) return std::nullopt;
-  return PlainString{run.law,
-                     std::span(photocurrents_A_).subspan(run.first_cell, run.filled_cells),
-                     std::span(copies_).subspan(run.first_cell, run.filled_cells),
-                     run.series_ohm,
-                     &parts_[0].bypass,
-                     &blocking_};
-}
-
 StringState StringCurve::make_state() const {
   StringState state;
   state.cells.resize(cells_.size());
@@ -82,13 +70,9 @@ double StringCurve::blocking_drop_V(double current_A) const {
 
 void StringCurve::at_current(double current_A, const StringRegime& regime, double tolerance,
                              StringState& state) const {
-  ElementPoint sum = substrings_at(current_A, regime, tolerance, state);
-  sum.voltage_V -= blocking_drop_V(current_A);
+  static_cast<ElementPoint&>(state) = substrings_at(current_A, regime, tolerance, state);
+  state.voltage_V -= blocking_drop_V(current_A);
   state.current_A = current_A;
-  state.voltage_V = sum.voltage_V;
-  state.slope_ohm = sum.slope_ohm;
-  state.curvature_V_A2 = sum.curvature_V_A2;
-  state.third_V_A3 = sum.third_V_A3;
   if (blocking_.kind == Diode::Kind::junction) add_blocking(state);
 }
 
@@ -182,13 +166,9 @@ void StringCurve::beside_junction_at_voltage(double voltage_V, const StringRegim
   const double g = bypass.conductance_S(i_A);
   Slopes current = inverted(rows.slopes());
   current += bypass.slopes(g);
-  const Slopes voltage = inverted(current);
+  static_cast<ElementPoint&>(state) = tied_point(voltage_V, current);
   state.current_A = root_A + i_A;
-  state.voltage_V = voltage_V;
-  state.slope_ohm = voltage.slope;
-  state.curvature_V_A2 = voltage.curvature;
-  state.third_V_A3 = voltage.third;
-  last = {u, g, state.current_A, {rows.voltage_V, voltage.slope, voltage.curvature, voltage.third}};
+  last = {u, g, state.current_A, tied_point(rows.voltage_V, current)};
   if (blocking_.kind == Diode::Kind::junction) add_blocking(state);
 }
 
@@ -196,9 +176,7 @@ void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, doubl
                              double high_A, double tolerance, StringState& state) const {
   if (regime.blocked) {
     state.current_A = 0.0;
-    state.voltage_V = voltage_V;
-    state.slope_ohm = std::numeric_limits<double>::infinity();
-    state.curvature_V_A2 = state.third_V_A3 = 0.0;
+    static_cast<ElementPoint&>(state) = {voltage_V, unlimited, 0.0, 0.0};
     return;
   }
   if (blocking_.kind == Diode::Kind::junction && voltage_V >= open_circuit_V_) {

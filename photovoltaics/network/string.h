@@ -18,23 +18,10 @@ namespace photorque {
 
 using CellTables = std::vector<std::shared_ptr<const DiodeVoltageLaw>>;
 
-// A string of cells of one law in series, with at most one bypass diode over all of them.
-struct PlainString {
-  const DiodeVoltageLaw* law = nullptr;
-  std::span<const double> photocurrents_A, copies;  // padded to DiodeVoltageLaw::lanes
-  double series_ohm = 0.0;                          // total of all cells
-  const DiodeJunction* bypass = nullptr;
-  const DiodeJunction* blocking = nullptr;
-};
-
 // A point of a string's curve, with the data for bounds between two points. Reused between
 // evaluations to avoid allocations.
-struct StringState {
+struct StringState : ElementPoint {  // slope_ohm is ∞ for a blocked string
   double current_A = 0.0;
-  double voltage_V = 0.0;
-  double slope_ohm = 0.0;       // −dV/dI; ∞ for a blocked string
-  double curvature_V_A2 = 0.0;  // d²V/dI²
-  double third_V_A3 = 0.0;      // d³V/dI³
   std::vector<JunctionState> cells;
   // A part at its current, from which the next solution starts; for a bypass junction in parallel
   // with it, the voltage without R_s and the conductance.
@@ -46,8 +33,6 @@ struct StringState {
   };
   std::vector<Part> parts;
   double blocking_ohm = 0.0;  // blocking junction, without R_s
-
-  Slopes slopes() const { return {slope_ohm, curvature_V_A2, third_V_A3}; }
 };
 
 // State of the ideal diodes. On a piece of the curve on which it is constant, the string is a
@@ -91,8 +76,6 @@ class StringCurve {
   // Lower bound of V at any current; −∞ unless clamping diodes bypass all cells.
   double lowest_V() const;
   bool has_blocking_clamp() const { return blocking_.kind == Diode::Kind::clamp; }
-  // This string as a PlainString, which points into this object; nothing for other strings.
-  std::optional<PlainString> plain() const;
   // Voltage interval over which a cell's curve hardly changes its form: a tenth of the smallest n
   // V_t.
   double close_V() const { return close_V_; }

@@ -15,12 +15,6 @@ constexpr size_t max_together = 64;  // maximum branches that are solved for all
 // Voltages that differ by less than this are equal except for rounding.
 constexpr double same_V = 1e-9;
 
-// V(I) of elements in parallel from the sum of their I(V).
-ElementPoint tied_point(double voltage_V, const Slopes& current) {
-  const Slopes voltage = inverted(current);
-  return {voltage_V, voltage.slope, voltage.curvature, voltage.third};
-}
-
 }  // namespace
 
 ElementPoint StringCurve::inside_at(uint32_t index, double current_A, const StringRegime* regime,
@@ -123,11 +117,7 @@ ElementPoint StringCurve::bypassed_at(uint32_t index, double current_A, const St
   } else {
     current.slope = std::numeric_limits<double>::infinity();  // held by the diodes inside
   }
-  const Slopes voltage = inverted(current);
-  last = {u,
-          g,
-          current_A,
-          {-(u + through_A * d.series_ohm), voltage.slope, voltage.curvature, voltage.third}};
+  last = {u, g, current_A, tied_point(-(u + through_A * d.series_ohm), current)};
   return last.at;
 }
 

@@ -8,36 +8,31 @@
 #include <memory>
 
 #include "core/numerics/random.h"
+#include "reference.h"
 #include "tests/refusal.h"
 
 namespace photorque {
 namespace {
 
-SettingsNode number(double x) {
-  return {x, {"array.toml", 1}};
+using reference::node;
+
+// Text, and whole and other numbers, of the table [array].
+SettingsNode text(const char* x) {
+  return node(std::string(x));
 }
 SettingsNode whole(int64_t x) {
-  return {x, {"array.toml", 1}};
+  return node(x);
 }
-SettingsNode text(const char* x) {
-  return {std::string(x), {"array.toml", 1}};
-}
-
-Settings settings(SettingsNode::Table table) {
-  SettingsNode root;
-  root.value = std::move(table);
-  root.where = {"array.toml", 1};
-  return Settings(std::make_shared<const SettingsNode>(root), "array");
+SettingsNode number(double x) {
+  return node(x);
 }
 
 SettingsNode::Table ten_by_ten() {
-  SettingsNode size;
-  size.value = SettingsNode::Array{whole(10), whole(10)};
-  return {{"cells", size}};
+  return {{"cells", reference::list({whole(10), whole(10)})}};
 }
 
 ArrayDesign design(SettingsNode::Table table = ten_by_ten()) {
-  return read_array_design(settings(std::move(table)));
+  return reference::design(std::move(table));
 }
 
 constexpr double half_A_W = 0.5;
@@ -59,24 +54,14 @@ TEST(PhotovoltaicArray, EvenLightGivesTheSumOfItsCells) {
 }
 
 SettingsNode tables(std::initializer_list<SettingsNode::Table> all) {
-  SettingsNode node;
-  SettingsNode::Array array;
-  for (const SettingsNode::Table& table : all) {
-    SettingsNode one;
-    one.value = table;
-    array.push_back(one);
-  }
-  node.value = array;
-  return node;
+  return node(SettingsNode::Array(all.begin(), all.end()));
 }
 
 // Two cells in series without diodes: at one current their voltages add up. The numbers that are
 // stated for the second belong to its area, 0.01 m², those that are not to any.
 TEST(PhotovoltaicArray, ACellThatDiffersHasItsOwnCircuit) {
   SettingsNode::Table table = ten_by_ten();
-  SettingsNode size;
-  size.value = SettingsNode::Array{whole(2), whole(1)};
-  table["cells"] = size;
+  table["cells"] = reference::list({whole(2), whole(1)});
   table["bypass"] = text("none");
   table["cell_override"] = tables({{{"index", whole(1)},
                                     {"photocurrent_factor", number(0.5)},
@@ -214,13 +199,11 @@ TEST(PhotovoltaicArray, CellPowersAddUpToThePowerDeliveredAndLostInDiodes) {
 TEST(PhotovoltaicArray, DarkCellWithoutBreakdownCostsItsSubstring) {
   std::vector<double> irradiance(100, 1000.0);
   irradiance[37] = 0.0;
-  SettingsNode circuit;
-  circuit.value = SettingsNode::Table{{"breakdown_fraction", number(0.0)},
-                                      {"shunt_ohm", number(1e9)},
-                                      {"reference_area_m2", number(1e-4)}};
   auto table = ten_by_ten();
   table["bypass_every"] = whole(20);
-  table["cell_parameters"] = circuit;
+  table["cell_parameters"] = node(SettingsNode::Table{{"breakdown_fraction", number(0.0)},
+                                                      {"shunt_ohm", number(1e9)},
+                                                      {"reference_area_m2", number(1e-4)}});
   const ArrayDesign array = design(table);
   const ArrayResult result = evaluate(array, array_light(10, 10, 0.2, 0.2, irradiance));
   const CellCurve cell(parameters_at(array.cell, 4e-4, array.temperature_K));

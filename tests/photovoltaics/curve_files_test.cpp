@@ -86,42 +86,34 @@ TEST(PhotovoltaicFit, SingleOutliersAreOmitted) {
 TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
   struct Written {
     const char* text;
-    std::optional<double> irradiance_W_m2, temperature_K;
+    std::optional<double> irradiance_W_m2 = {}, temperature_K = {};
   };
   for (const Written& w : std::initializer_list<Written>{
-           {"voltage_V,current_A\n0.1,0.5\n0.2,0.4\n", {}, {}},
-           {"\xEF\xBB\xBF\"V\",\"I\"\r\n0.1,0.5\r\n0.2,0.4\r\n", {}, {}},
-           {"Voltage (V);Current (mA)\n0,1;500\n0,2;400\n", {}, {}},
-           {"# by hand\nVolts\tAmps\n0.1\t0.5\n0.2\t0.4\n", {}, {}},
-           {"Module 17, 25 March\nIsc: 0.5\nCurrent [mA], Voltage [mV]\n500, 100\n400, 200\n",
-            {},
-            {}},
-           {"V I\n 0.1   0.5\n 0.2   0.4\n", {}, {}},
-           {"voltage,current\nV,mA\n0.1,500\n0.2,400\n", {}, {}},
-           {"Time;U / V;I / A\n08:00;0.1;0.5\n08:01;0.2;0.4\n", {}, {}},
-           {"Spannung [V];Strom [mA]\n0,1;500\n0,2;400\n", {}, {}},
-           {"Tensión (V)\tCorriente (A)\n0,1\t0,5\n0,2\t0,4\n", {}, {}},
-           {"tension courant\n0,1 0,5\n0,2 0,4\n", {}, {}},
-           {"电压(V),电流(A)\n0.1,0.5\n0.2,0.4\n", {}, {}},
+           {"voltage_V,current_A\n0.1,0.5\n0.2,0.4\n"},
+           {"\xEF\xBB\xBF\"V\",\"I\"\r\n0.1,0.5\r\n0.2,0.4\r\n"},
+           {"Voltage (V);Current (mA)\n0,1;500\n0,2;400\n"},
+           {"# by hand\nVolts\tAmps\n0.1\t0.5\n0.2\t0.4\n"},
+           {"Module 17, 25 March\nIsc: 0.5\nCurrent [mA], Voltage [mV]\n500, 100\n400, 200\n"},
+           {"V I\n 0.1   0.5\n 0.2   0.4\n"},
+           {"voltage,current\nV,mA\n0.1,500\n0.2,400\n"},
+           {"Time;U / V;I / A\n08:00;0.1;0.5\n08:01;0.2;0.4\n"},
+           {"Spannung [V];Strom [mA]\n0,1;500\n0,2;400\n"},
+           {"Tensión (V)\tCorriente (A)\n0,1\t0,5\n0,2\t0,4\n"},
+           {"tension courant\n0,1 0,5\n0,2 0,4\n"},
+           {"电压(V),电流(A)\n0.1,0.5\n0.2,0.4\n"},
            {"Spannung in V;Strom in mA;Einstrahlung in W/m2;Zelltemperatur in °C\n"
             "0,1;500;900;24\n0,2;400;1100;26\n",
             1000.0, 298.15},
            // KickStart, the buffer and the SCPI fields of Keithley's source-measure units, whose
            // current is counted into the device.
            {"KickStart Export\nModel,2460\n\nRun Index,Point,SMU-1 Voltage (V),SMU-1 Current (A),"
-            "SMU-1 Time (s)\n1,1,1.0E-01,5.0E-01,0.1\n1,2,2.0E-01,4.0E-01,0.2\n",
-            {},
-            {}},
+            "SMU-1 Time (s)\n1,1,1.0E-01,5.0E-01,0.1\n1,2,2.0E-01,4.0E-01,0.2\n"},
            {"Model,2450\n\nIndex,Reading,Unit,Source Value,Source Unit\n1,+5.0E-01,A,+1.0E-01,V\n"
-            "2,+4.0E-01,A,+2.0E-01,V\n",
-            {},
-            {}},
-           {"Index,Reading,Unit,Value,Unit\n1,100,mV,0.5,A\n2,200,mV,0.4,A\n", {}, {}},
+            "2,+4.0E-01,A,+2.0E-01,V\n"},
+           {"Index,Reading,Unit,Value,Unit\n1,100,mV,0.5,A\n2,200,mV,0.4,A\n"},
            {"VOLT,CURR,RES,TIME,STAT\n+1.0E-01,+5.0E-01,+9.91E+37,+0.0E+00,+2.1E+04\n"
-            "+2.0E-01,+4.0E-01,+9.91E+37,+1.0E-01,+2.1E+04\n",
-            {},
-            {}},
-           {"AnodeI,AnodeV,CathodeI\n0.5,0.1,-0.5\n0.4,0.2,-0.4\n", {}, {}},
+            "+2.0E-01,+4.0E-01,+9.91E+37,+1.0E-01,+2.1E+04\n"},
+           {"AnodeI,AnodeV,CathodeI\n0.5,0.1,-0.5\n0.4,0.2,-0.4\n"},
            // PVPM, Daystar, ESTI, HT, and lines above and below the readings.
            {"PVPM 1000C40\r\nUoc = 0,60 V\r\nEeff = 1000 W/m²\r\nTmod = 25,0 °C\r\n\r\n"
             "Nr\tU in V\tI in A\tP in W\r\n1\t0,1\t0,5\t0,05\r\n2\t0,2\t0,4\t0,08\r\n",
@@ -133,13 +125,11 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
             "V_meas [V]\tI_meas [A]\tV_corr [V]\tI_corr [A]\n0.1\t0.5\t9\t9\n0.2\t0.4\t9\t9\n",
             1000.0, 298.15},
            {"Temperature coefficient: 0.05 %/K\nV (V),I (A),Vopc (V),Iopc (A)\n0.1,0.5,9,9\n"
-            "0.2,0.4,9,9\n",
-            {},
-            {}},
-           {"Vmod;Imod;\n0,1 V;500 mA;\n0,2 V;400 mA;\nIsc;0,5\nEnd of data\n", {}, {}},
-           {"Voltage (V) Current (mA)\n0.1 500\n0.2 400\n", {}, {}},
-           {"V [V],J [mA/cm^2]\n0.1,500\n0.2,400\n", {}, {}},
-           {"voltage_mV,current_mA\n100,500\n150,NaN\n200,400\n250,9.91E37\n", {}, {}},
+            "0.2,0.4,9,9\n"},
+           {"Vmod;Imod;\n0,1 V;500 mA;\n0,2 V;400 mA;\nIsc;0,5\nEnd of data\n"},
+           {"Voltage (V) Current (mA)\n0.1 500\n0.2 400\n"},
+           {"V [V],J [mA/cm^2]\n0.1,500\n0.2,400\n"},
+           {"voltage_mV,current_mA\n100,500\n150,NaN\n200,400\n250,9.91E37\n"},
            {"voltage_V,current_A,irradiance_W_m2,Temperature "
             "(C)\n0.1,0.5,900,24\n0.2,0.4,1100,26\n",
             1000.0, 298.15}}) {

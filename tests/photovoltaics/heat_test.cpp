@@ -8,6 +8,7 @@
 #include "core/numerics/random.h"
 #include "photovoltaics/array/array.h"
 #include "photovoltaics/array/supply.h"
+#include "reference.h"
 
 namespace photorque {
 namespace {
@@ -98,14 +99,7 @@ TEST(CellPlate, AColdPlateDoesNotOvershootInLongSteps) {
 // --- An array ---------------------------------------------------------------------------------
 
 ArrayDesign twelve_cells(const CellHeat& heat) {
-  ArrayDesign design;
-  design.columns = 3;
-  design.rows = 4;
-  RegularWiring wiring;
-  wiring.bypass_every = 4;
-  wiring.bypass = {Diode::Kind::clamp, 0.5};
-  design.wiring = regular_wiring(3, 4, wiring);
-  design.cell = known_cells()[1].model;
+  ArrayDesign design = reference::array_in_series(3, 4, 4);
   design.heat = heat;
   return design;
 }

@@ -9,6 +9,7 @@
 
 #include "photovoltaics/array/losses.h"
 #include "raytrace/surfaces/glass.h"
+#include "reference.h"
 #include "tests/raytrace/test_scenes.h"
 #include "tests/receivers/receiver_scenes.h"
 #include "tests/refusal.h"
@@ -185,20 +186,11 @@ TEST(IncidenceReceiver, DiffuseLightHasWalshsReflectance) {
   EXPECT_NEAR(1.0 - 0.96 * entering / all, 0.0918, 5e-5);
 }
 
-RegularWiring four_in_series() {
-  RegularWiring options;
-  options.bypass_every = 4;
-  return options;
-}
-
 // An array whose left half is lit straight and whose right half at a slant.
 TEST(PhotovoltaicArray, PhotocurrentAndWaterfallFollowTheEnteringLight) {
   ArrayLight light = array_light(2, 2, 0.2, 0.2, std::vector<double>(4, 500.0));
   light.entry = {8, 1, {1, 1, 1, 1, 1.0, 0.9, 1.0, 0.9}};
-  ArrayDesign design;
-  design.columns = design.rows = 2;
-  design.wiring = regular_wiring(2, 2, four_in_series());
-  design.cell = known_cells()[1].model;
+  const ArrayDesign design = reference::array_in_series(2, 2, 4);
   const ArrayResult result = evaluate_array(design, light, std::array{0.5});
   for (size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(result.cell_photocurrent_A[i], 0.5 * 5.0 * (i % 2 == 0 ? 1.0 : 0.9), 1e-14);

@@ -1,6 +1,7 @@
 // The published curves and parameters of cwhanse/ivcurves.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -35,30 +36,20 @@ struct Curve {
   double half_A = 0;  // at half the open-circuit voltage
 };
 
-// The quoted numbers of the array called `key` in the curve that starts at `from`.
-inline std::vector<double> quoted_array(const std::string& json, const std::string& key,
-                                        size_t from) {
-  const size_t start = json.find('[', json.find('"' + key + '"', from));
-  const size_t end = json.find(']', start);
-  std::vector<double> values;
-  for (size_t quote = json.find('"', start); quote < end;) {
-    const size_t close = json.find('"', quote + 1);
-    values.push_back(std::stod(json.substr(quote + 1, close - quote - 1)));
-    quote = json.find('"', close + 1);
-  }
-  return values;
+// Numbers that a file writes as texts.
+inline double number_in(const nlohmann::json& text) {
+  return std::stod(text.get<std::string>());
 }
-
-inline double quoted_number(const std::string& json, const std::string& key, size_t from) {
-  const size_t quote = json.find('"', json.find(':', json.find('"' + key + '"', from)));
-  return std::stod(json.substr(quote + 1, json.find('"', quote + 1) - quote - 1));
+inline std::vector<double> numbers_in(const nlohmann::json& texts) {
+  std::vector<double> all;
+  for (const auto& text : texts) all.push_back(number_in(text));
+  return all;
 }
 
 // The curves of a case; each with the parameters of its line, or of the only line.
 inline std::vector<Curve> read(const std::string& name) {
   const auto folder = outside::third_party("reference/ivcurves");
-  const std::string json = file_text(folder / (name + ".json"));
-  if (json.empty()) return {};
+  const auto json = nlohmann::json::parse(file_text(folder / (name + ".json")));
   std::vector<Truth> truths;
   const auto rows = csv_rows(folder / (name + ".csv"));
   for (size_t r = 1; r < rows.size(); ++r) {
@@ -66,20 +57,18 @@ inline std::vector<Curve> read(const std::string& name) {
     if (rows[r].size() == 7) truths.push_back({c(1), c(2), c(3), c(4), c(5), c(6)});
   }
   std::vector<Curve> curves;
-  size_t at = json.find("\"IV Curves\"");
-  for (at = json.find("\"Index\"", at + 1); at != std::string::npos;
-       at = json.find("\"Index\"", at + 1)) {
+  for (const auto& one : json.at("IV Curves")) {
     Curve curve;
     curve.truth = truths[truths.size() == 1 ? 0 : curves.size()];
-    curve.voltage_V = quoted_array(json, "Voltages", at);
-    curve.current_A = quoted_array(json, "Currents", at);
+    curve.voltage_V = numbers_in(one.at("Voltages"));
+    curve.current_A = numbers_in(one.at("Currents"));
     if (truths.size() > 1) {
-      curve.short_circuit_A = quoted_number(json, "i_sc", at);
-      curve.open_circuit_V = quoted_number(json, "v_oc", at);
-      curve.maximum_W = quoted_number(json, "p_mp", at);
-      curve.maximum_V = quoted_number(json, "v_mp", at);
-      curve.maximum_A = quoted_number(json, "i_mp", at);
-      curve.half_A = quoted_number(json, "i_x", at);
+      curve.short_circuit_A = number_in(one.at("i_sc"));
+      curve.open_circuit_V = number_in(one.at("v_oc"));
+      curve.maximum_W = number_in(one.at("p_mp"));
+      curve.maximum_V = number_in(one.at("v_mp"));
+      curve.maximum_A = number_in(one.at("i_mp"));
+      curve.half_A = number_in(one.at("i_x"));
     }
     curves.push_back(curve);
   }

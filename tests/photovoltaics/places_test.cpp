@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "photovoltaics/array/array.h"
+#include "reference.h"
 #include "tests/receivers/receiver_scenes.h"
 #include "tests/refusal.h"
 
@@ -100,14 +101,8 @@ TEST(CellPlaces, MeshAndRegularRectanglesGiveTheSameArray) {
   for (size_t i = 0; i < irradiance.size(); ++i) {
     lit.power_W.sums[i] = irradiance[i] * grid.area_m2[i];
   }
-  ArrayDesign regular;
-  regular.columns = 3;
-  regular.rows = 2;
+  ArrayDesign regular = reference::array_in_series(3, 2, 6);
   regular.gap_m = pitch_m - side_m;
-  RegularWiring options;
-  options.bypass_every = 6;
-  regular.wiring = regular_wiring(3, 2, options);
-  regular.cell = known_cells()[1].model;
   ArrayDesign meshed = regular;
   meshed.gap_m = 0.0;
   meshed.places = places_from_mesh(squares, grid);

@@ -79,11 +79,17 @@ inline Diode schottky() {
   return d;
 }
 
-// 100 cells in series, down one column and up the next, a bypass diode over each 20.
-inline ArrayWiring series_5(const Diode& bypass) {
+// All cells in series, down one column and up the next, a bypass diode over each `bypass_every`.
+inline ArrayWiring series(int columns, int rows, int bypass_every, const Diode& bypass = clamp()) {
   RegularWiring options;
+  options.bypass_every = bypass_every;
   options.bypass = bypass;
-  return regular_wiring(10, 10, options);
+  return regular_wiring(columns, rows, options);
+}
+
+// 100 cells in series.
+inline ArrayWiring series_5(const Diode& bypass) {
+  return series(10, 10, 20, bypass);
 }
 
 // Ten columns in parallel, each with one bypass and one blocking diode.
@@ -94,6 +100,28 @@ inline ArrayWiring parallel_10(const Diode& bypass, const Diode& blocking) {
   options.bypass = bypass;
   options.blocking = blocking;
   return regular_wiring(10, 10, options);
+}
+
+// An array of equal known cells in series, a bypass diode over each `bypass_every`.
+inline ArrayDesign array_in_series(int columns, int rows, int bypass_every, size_t known_cell = 1) {
+  ArrayDesign design;
+  design.columns = columns;
+  design.rows = rows;
+  design.wiring = series(columns, rows, bypass_every);
+  design.cell = known_cells().at(known_cell).model;
+  return design;
+}
+
+// Values of the table [array], and the design that it states.
+inline SettingsNode node(decltype(SettingsNode::value) value) {
+  return {std::move(value), {"array.toml", 1}};
+}
+inline SettingsNode list(std::vector<SettingsNode> members) {
+  return node(SettingsNode::Array(std::move(members)));
+}
+inline ArrayDesign design(SettingsNode::Table table) {
+  return read_array_design(
+      Settings(std::make_shared<const SettingsNode>(node(std::move(table))), "array"));
 }
 
 inline std::shared_ptr<const DiodeVoltageTable> table(const CellParameters& p) {

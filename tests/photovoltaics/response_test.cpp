@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 
 #include "photovoltaics/cell/model.h"
@@ -82,7 +81,6 @@ TEST(NamedCells, HaveThePublishedEfficiencies) {
   for (const char* name : {"silicon_heterojunction", "gallium_arsenide", "cadmium_telluride"}) {
     for (const double nm : {730.0, 850.0, 940.0}) {
       const double got = efficiency(name, light_at(nm, 30), 1000.0);
-      std::printf("    %-24s %3.0f nm %.3f\n", name, nm, got);
       // Neither beyond the photon energy times the largest voltage, nor beyond the edge.
       const double gap_nm = std::string(name) == "silicon_heterojunction" ? 1190.0 : 900.0;
       if (nm > gap_nm) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "photovoltaics/array/losses.h"
+#include "reference.h"
 
 namespace photorque {
 namespace {
@@ -14,13 +15,7 @@ constexpr double cell_A = 2.0;
 
 SupplyDesign four_cells() {
   SupplyDesign design;
-  RegularWiring wiring;
-  wiring.bypass_every = 4;
-  wiring.bypass = {Diode::Kind::clamp, 0.5};
-  design.array.columns = 4;
-  design.array.rows = 1;
-  design.array.wiring = regular_wiring(4, 1, wiring);
-  design.array.cell = known_cells().front().model;
+  design.array = reference::array_in_series(4, 1, 4, 0);
   design.cell_area_m2.assign(4, 0.005);
   design.max_photocurrent_A = 2.0 * cell_A;
   return design;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -24,6 +25,13 @@ kind = "sun"
 irradiance_W_m2 = 1000
 angular_radius_deg = 0.27
 direction = [0.6, 0, -0.8]
+)";
+// From above.
+constexpr const char* even_sun = R"([[source]]
+kind = "sun"
+irradiance_W_m2 = 1000
+angular_radius_deg = 0.27
+direction = [0, 0, -1]
 )";
 // A lamp to one side.
 constexpr const char* lamp = R"([[source]]
@@ -86,29 +94,39 @@ Vec3 row_of(std::map<std::string, std::vector<double>>& columns, const std::stri
           columns.at(stem + "_z" + unit)[i]};
 }
 
-// A black plate takes up E A cos/c along the light, at its middle: r × F, at every attitude and
-// yaw.
-TEST_F(CoupledCommand, TorqueOfAPlateInSlantingSunlight) {
-  succeed("propagate " + experiment(sun) + " --out " + at("o"));
-  auto history = csv_table(at("o/time_history.csv"));
-  const Vec3 along(0.6, 0, -0.8);
+// Torques of light in a history against r × F of a black plate, which takes up E A cos/c along the
+// light at its middle. `cosine`: of the angle of incidence, for the direction of the light in body
+// axes and the time.
+struct TorqueComparison {
   double largest = 0.0, worst = 0.0;
+};
+TorqueComparison compare_torques(
+    std::map<std::string, std::vector<double>>& history,
+    const std::function<double(const Vec3& light_body, double time_s)>& cosine) {
+  TorqueComparison all;
   for (size_t i = 0; i < history.at("t_s").size(); ++i) {
     const Quat q(history.at("q_w")[i], history.at("q_x")[i], history.at("q_y")[i],
                  history.at("q_z")[i]);
-    const Vec3 light = q.conjugate() * along;
-    const Vec3 force = 1000.0 * edge_m * edge_m * std::abs(light.z()) / speed_of_light_m_s * light;
+    const Vec3 light = q.conjugate() * Vec3(0.6, 0, -0.8);
+    const Vec3 force =
+        1000.0 * edge_m * edge_m * cosine(light, history.at("t_s")[i]) / speed_of_light_m_s * light;
     const Vec3 torque = Vec3(0, 0, height_m).cross(force);
-    largest = std::max(largest, torque.norm());
-    worst =
-        std::max(worst, (row_of(history, "torque_radiation_pressure", i, "_N_m") - torque).norm());
+    const Vec3 found = row_of(history, "torque_radiation_pressure", i, "_N_m");
+    all.largest = std::max(all.largest, torque.norm());
+    all.worst = std::max(all.worst, (found - torque).norm());
   }
-  EXPECT_GT(largest, 2e-8);
-  EXPECT_LE(worst, 0.01 * largest);
-  // The light on the cells is E A cos.
-  auto power = csv_table(at("o/power.csv"));
-  auto attitude = csv_table(at("o/time_history.csv"));
-  EXPECT_GT(power.at("light_on_cells_W").size(), 30u);
+  return all;
+}
+
+// At every attitude and yaw.
+TEST_F(CoupledCommand, TorqueOfAPlateInSlantingSunlight) {
+  succeed("propagate " + experiment(sun) + " --out " + at("o"));
+  auto history = csv_table(at("o/time_history.csv"));
+  const TorqueComparison torques = compare_torques(
+      history, [](const Vec3& light_body, double) { return std::abs(light_body.z()); });
+  EXPECT_GT(torques.largest, 2e-8);
+  EXPECT_LE(torques.worst, 0.01 * torques.largest);
+  EXPECT_GT(csv_table(at("o/power.csv")).at("light_on_cells_W").size(), 30u);
   EXPECT_LE(figure("energy_closure", "o"), 1e-9);
 }
 
@@ -141,22 +159,14 @@ TEST_F(CoupledCommand, APlateOnAJointTakesTheLightOfItsAngle) {
     succeed("propagate " + experiment(sun, follow ? follows : scheduled) +
             " --set platform.tilt_limit_deg=8 --set light.tolerance=4e-3 --out " + at("o"));
     auto history = csv_table(at("o/time_history.csv"));
-    double largest = 0.0, worst = 0.0;
-    for (size_t i = 0; i < history.at("t_s").size(); ++i) {
-      const Quat q(history.at("q_w")[i], history.at("q_x")[i], history.at("q_y")[i],
-                   history.at("q_z")[i]);
-      const Vec3 light = q.conjugate() * Vec3(0.6, 0, -0.8);
-      const double angle = (-30.0 + 2.0 * std::min(30.0, history.at("t_s")[i])) * degree_rad;
-      const double cosine = follow ? std::hypot(light.x(), light.z())
-                                   : -Vec3(std::sin(angle), 0, std::cos(angle)).dot(light);
-      const Vec3 force = 1000.0 * edge_m * edge_m * cosine / speed_of_light_m_s * light;
-      const Vec3 torque = Vec3(0, 0, height_m).cross(force);
-      largest = std::max(largest, torque.norm());
-      worst = std::max(worst,
-                       (row_of(history, "torque_radiation_pressure", i, "_N_m") - torque).norm());
-    }
-    EXPECT_GT(largest, 2e-8);
-    EXPECT_LE(worst, 0.012 * largest) << (follow ? "follows" : "scheduled");
+    const TorqueComparison torques =
+        compare_torques(history, [&](const Vec3& light_body, double time_s) {
+          const double angle = (-30.0 + 2.0 * std::min(30.0, time_s)) * degree_rad;
+          return follow ? std::hypot(light_body.x(), light_body.z())
+                        : -Vec3(std::sin(angle), 0, std::cos(angle)).dot(light_body);
+        });
+    EXPECT_GT(torques.largest, 2e-8);
+    EXPECT_LE(torques.worst, 0.012 * torques.largest) << (follow ? "follows" : "scheduled");
     EXPECT_LE(figure("energy_closure", "o"), 1e-9);
     // No more than all light that a plate square to the Sun takes; when it follows, the cosine of
     // 0.6 across the joint, turned by the yaw, and of a few degrees of tilt.
@@ -198,13 +208,6 @@ TEST_F(CoupledCommand, TableAndTraceAgreeUnderALampToOneSide) {
 
 // A level platform at rest under an even Sun: constant power, so that every event has its instant.
 TEST_F(CoupledCommand, EventsComeAtTheirInstants) {
-  const std::string even = R"([[source]]
-kind = "sun"
-name = "lab_sun"
-irradiance_W_m2 = 1000
-angular_radius_deg = 0.27
-direction = [0, 0, -1]
-)";
   const std::string day = R"([array.day]
 load_W = 6
 converter_efficiency = 0.9
@@ -218,7 +221,7 @@ on = false
 time_s = 300.5
 on = true
 )";
-  succeed("propagate " + experiment(even, day) +
+  succeed("propagate " + experiment(even_sun, day) +
           " --set propagate.initial_tilt_deg=0 --set propagate.initial_rate_rad_s=[0,0,0]"
           " --set propagate.duration_s=400 --set array.temperature_K=298.15 --out " +
           at("o"));
@@ -242,13 +245,7 @@ on = true
 // A level plate at rest under an even Sun: the run ends in the steady state of `power`, in still
 // air and in orbit's surroundings alike.
 TEST_F(CoupledCommand, CellsEndInTheSteadyStateOfPower) {
-  const std::string even = R"([[source]]
-kind = "sun"
-irradiance_W_m2 = 1000
-angular_radius_deg = 0.27
-direction = [0, 0, -1]
-)";
-  const std::string file = experiment(even, "[array.thermal]\ncapacity_J_m2_K = 200\n");
+  const std::string file = experiment(even_sun, "[array.thermal]\ncapacity_J_m2_K = 200\n");
   for (const std::string around :
        {"", " --set array.thermal.convection_W_m2_K=0 --set array.thermal.surroundings_K=3"}) {
     succeed("power " + file + around + " --out " + at("p"));

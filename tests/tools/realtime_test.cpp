@@ -248,11 +248,9 @@ TEST(Link, PacketsOvertakeOnlyWhereTheyMay) {
 }
 
 double quantity(const Product& product, const std::string& name) {
-  for (const Quantity& q : product.quantities) {
-    if (q.name == name) return q.estimate.value;
-  }
-  ADD_FAILURE() << name;
-  return 0.0;
+  const Quantity* found = find_quantity(product, name);
+  EXPECT_NE(found, nullptr) << name;
+  return found != nullptr ? found->estimate.value : 0.0;
 }
 
 // A thousand ticks of a millisecond, the i-th late by i microseconds, and five by two steps.

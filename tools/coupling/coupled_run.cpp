@@ -16,6 +16,13 @@ std::vector<Lanes> at_one_instant(Propagator& motion, double time_s) {
   return y;
 }
 
+// Illumination by the Sun in the state `y` under the present command.
+Lanes illumination_of(const Propagator& motion, const Lanes& times_s, const std::vector<Lanes>& y) {
+  std::array<ZeroOrderHold, Lanes::count> held;
+  held.fill(motion.held());
+  return motion.dynamics().at(times_s, held, y.data()).illumination;
+}
+
 }  // namespace
 
 std::vector<GroupOutput> group_outputs(const LightModel& light, const LightSettings& settings,
@@ -145,10 +152,7 @@ void CoupledRun::collect(Propagator& motion) {
       times_s.set(batch, time_s);
     }
     motion.dense(times_s, y.data());
-    std::array<ZeroOrderHold, Lanes::count> held;
-    held.fill(motion.held());
-    const Lanes illumination =
-        has_sun_ ? motion.dynamics().at(times_s, held, y.data()).illumination : Lanes(1.0);
+    const Lanes illumination = has_sun_ ? illumination_of(motion, times_s, y) : Lanes(1.0);
     for (int i = 0; i < batch; ++i, ++collected_) {
       instants_[collected_].illumination = illumination[i];
       if (table_) instants_[collected_].channels = channels_at(attitude_of(y, i));
@@ -278,12 +282,7 @@ void CoupledRun::exchange(Propagator& motion) {
     segment_end_s_ = now_s;
   }
   const std::vector<Lanes> y = at_one_instant(motion, now_s);
-  double illumination = 1.0;
-  if (has_sun_) {
-    std::array<ZeroOrderHold, Lanes::count> held;
-    held.fill(motion.held());
-    illumination = motion.dynamics().at(now_s, held, y.data()).illumination[0];
-  }
+  const double illumination = has_sun_ ? illumination_of(motion, now_s, y)[0] : 1.0;
   if (!table_) {
     const Vec3 expected = held_.at(now_s);
     add_trace(now_s, channels_at(attitude_of(y, 0)));

@@ -46,8 +46,10 @@ PHOTORQUE_EXPORT void fmi3FreeInstance(fmi3Instance handle) {
 PHOTORQUE_EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance handle, fmi3Boolean,
                                                         fmi3Float64, fmi3Float64 start_s,
                                                         fmi3Boolean has_stop, fmi3Float64 stop_s) {
-  return guarded(handle, __func__, &Instance::enter_initialization, start_s,
-                 has_stop ? std::optional<double>(stop_s) : std::nullopt);
+  return guarded(handle, __func__, [&](Instance& instance) {
+    instance.set_up(start_s, has_stop ? std::optional<double>(stop_s) : std::nullopt);
+    return instance.enter_initialization();
+  });
 }
 
 PHOTORQUE_EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance handle) {
@@ -66,8 +68,9 @@ PHOTORQUE_EXPORT fmi3Status fmi3DoStep(fmi3Instance handle, fmi3Float64 now_s, f
                                        fmi3Boolean, fmi3Boolean* event, fmi3Boolean* terminate,
                                        fmi3Boolean* early, fmi3Float64* reached_s) {
   return guarded(handle, "fmi3DoStep", [&](Instance& instance) {
-    *event = *early = false;
-    const fmi3Status status = instance.step(now_s, step_s, *terminate);
+    *event = *early = *terminate = false;
+    const fmi3Status status = instance.step(now_s, step_s);
+    *terminate = instance.has_ended();
     *reached_s = instance.now_s();
     return status;
   });
@@ -124,14 +127,7 @@ PHOTORQUE_EXPORT fmi3Status fmi3DeserializeFMUState(fmi3Instance handle, const f
   return guarded(handle, __func__, &Instance::read_state, bytes, size, to);
 }
 
-// Functions that the unit does not support: they return fmi3Error. They must exist, because
-// importers look up every name.
-#define PHOTORQUE_ABSENT(name)                                               \
-  PHOTORQUE_EXPORT fmi3Status name(fmi3Instance handle) {                    \
-    return guarded(handle, #name, [](Instance& instance) {                   \
-      return instance.refuse(#name " is not offered: modelDescription.xml"); \
-    });                                                                      \
-  }
+// Functions that the unit does not support.
 PHOTORQUE_ABSENT(fmi3GetFloat32)
 PHOTORQUE_ABSENT(fmi3GetInt8)
 PHOTORQUE_ABSENT(fmi3GetUInt8)

@@ -2,7 +2,6 @@
 // of the arguments are those of the specification (Functional Mock-up Interface for Model Exchange
 // and Co-Simulation 2.0.4, sections 2.1 and 4.2).
 #include <cstdarg>
-#include <memory>
 #include <string>
 
 #include "core/text/parse.h"
@@ -20,8 +19,8 @@ using fmi2Real = double;
 using fmi2Boolean = int;
 using fmi2String = const char*;
 using fmi2Byte = char;
-// The first five values are those of fmi3Status; fmi2Pending is not used.
-using fmi2Status = int;
+// Its first five values are those of FMI 2.0; fmi2Pending is not used.
+using fmi2Status = fmi3Status;
 enum fmi2Type { fmi2ModelExchange, fmi2CoSimulation };
 enum fmi2StatusKind { fmi2DoStepStatus, fmi2PendingStatus, fmi2LastSuccessfulTime, fmi2Terminated };
 
@@ -35,28 +34,6 @@ struct fmi2CallbackFunctions {
 };
 
 namespace {
-
-// An instance with additional data of FMI 2.0.
-struct Unit2 {
-  std::unique_ptr<Instance> instance;
-  double start_s = 0.0;
-  std::optional<double> stop_s;
-  bool has_ended = false;
-};
-
-template <typename Body>
-fmi2Status guarded2(fmi2Component handle, const char* function, Body body) {
-  auto* unit = static_cast<Unit2*>(handle);
-  if (unit == nullptr) return fmi3Error;
-  return guarded(unit->instance.get(), function, [&](Instance&) { return body(*unit); });
-}
-
-// Calls guarded() for the instance.
-template <typename... Rest>
-fmi2Status of_instance(fmi2Component handle, const char* function, Rest... rest) {
-  auto* unit = static_cast<Unit2*>(handle);
-  return guarded(unit == nullptr ? nullptr : unit->instance.get(), function, rest...);
-}
 
 // Path "/a b" from "file:///a%20b", "file:/a b" or "file://localhost/a b". Null for another kind of
 // address.
@@ -112,162 +89,136 @@ PHOTORQUE_EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, f
   }
   const std::optional<std::string> folder =
       resource_location != nullptr ? path_of(resource_location) : std::nullopt;
-  Instance* instance = instantiate("fmi2Instantiate", name, guid,
-                                   folder ? folder->c_str() : nullptr, logging != 0, sink);
-  if (instance == nullptr) return nullptr;
-  auto unit = std::make_unique<Unit2>();
-  unit->instance.reset(instance);
-  unit->start_s = instance->description().start_s;
-  return unit.release();
+  return instantiate("fmi2Instantiate", name, guid, folder ? folder->c_str() : nullptr,
+                     logging != 0, sink);
 }
 
 PHOTORQUE_EXPORT void fmi2FreeInstance(fmi2Component handle) {
-  delete static_cast<Unit2*>(handle);
+  delete static_cast<Instance*>(handle);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2SetDebugLogging(fmi2Component handle, fmi2Boolean on, size_t count,
                                                 const fmi2String categories[]) {
-  return of_instance(handle, __func__, &Instance::set_debug_logging, on != 0, count, categories);
+  return guarded(handle, __func__, &Instance::set_debug_logging, on != 0, count, categories);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2SetupExperiment(fmi2Component handle, fmi2Boolean, fmi2Real,
                                                 fmi2Real start_s, fmi2Boolean has_stop,
                                                 fmi2Real stop_s) {
-  return guarded2(handle, "fmi2SetupExperiment", [&](Unit2& unit) {
-    unit.start_s = start_s;
-    unit.stop_s = has_stop != 0 ? std::optional<double>(stop_s) : std::nullopt;
-    return fmi3OK;
-  });
+  return guarded(handle, __func__, &Instance::set_up, start_s,
+                 has_stop != 0 ? std::optional<double>(stop_s) : std::nullopt);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component handle) {
-  return guarded2(handle, "fmi2EnterInitializationMode", [](Unit2& unit) {
-    return unit.instance->enter_initialization(unit.start_s, unit.stop_s);
-  });
+  return guarded(handle, __func__, &Instance::enter_initialization);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component handle) {
-  return of_instance(handle, __func__, &Instance::exit_initialization);
+  return guarded(handle, __func__, &Instance::exit_initialization);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2Terminate(fmi2Component handle) {
-  return of_instance(handle, __func__, &Instance::terminate);
+  return guarded(handle, __func__, &Instance::terminate);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2Reset(fmi2Component handle) {
-  return guarded2(handle, "fmi2Reset", [](Unit2& unit) {
-    unit.start_s = unit.instance->description().start_s;
-    unit.stop_s.reset();
-    unit.has_ended = false;
-    return unit.instance->reset();
-  });
+  return guarded(handle, __func__, &Instance::reset);
 }
 
 // If the platform reaches its stop, the step ends early: the result is fmi2Discard, and
 // fmi2Terminated is true.
 PHOTORQUE_EXPORT fmi2Status fmi2DoStep(fmi2Component handle, fmi2Real now_s, fmi2Real step_s,
                                        fmi2Boolean) {
-  return guarded2(handle, "fmi2DoStep", [&](Unit2& unit) {
-    const fmi3Status status = unit.instance->step(now_s, step_s, unit.has_ended);
-    return status == fmi3OK && unit.has_ended ? fmi3Discard : status;
+  return guarded(handle, "fmi2DoStep", [&](Instance& instance) {
+    const fmi3Status status = instance.step(now_s, step_s);
+    return status == fmi3OK && instance.has_ended() ? fmi3Discard : status;
   });
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2GetBooleanStatus(fmi2Component handle, fmi2StatusKind kind,
                                                  fmi2Boolean* value) {
-  return guarded2(handle, "fmi2GetBooleanStatus", [&](Unit2& unit) {
-    if (kind != fmi2Terminated) return unit.instance->refuse("only fmi2Terminated is a Boolean");
-    *value = unit.has_ended ? 1 : 0;
+  return guarded(handle, "fmi2GetBooleanStatus", [&](Instance& instance) {
+    if (kind != fmi2Terminated) return instance.refuse("only fmi2Terminated is a Boolean");
+    *value = instance.has_ended() ? 1 : 0;
     return fmi3OK;
   });
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2GetRealStatus(fmi2Component handle, fmi2StatusKind kind,
                                               fmi2Real* value) {
-  return guarded2(handle, "fmi2GetRealStatus", [&](Unit2& unit) {
+  return guarded(handle, "fmi2GetRealStatus", [&](Instance& instance) {
     if (kind != fmi2LastSuccessfulTime) {
-      return unit.instance->refuse("only fmi2LastSuccessfulTime is a Real");
+      return instance.refuse("only fmi2LastSuccessfulTime is a Real");
     }
-    *value = unit.instance->now_s();
+    *value = instance.now_s();
     return fmi3OK;
   });
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2GetReal(fmi2Component handle, const fmi2ValueReference of[],
                                         size_t count, fmi2Real values[]) {
-  return of_instance(handle, __func__, &Instance::get_numbers, std::span(of, count), values);
+  return guarded(handle, __func__, &Instance::get_numbers, std::span(of, count), values);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2SetReal(fmi2Component handle, const fmi2ValueReference of[],
                                         size_t count, const fmi2Real values[]) {
-  return of_instance(handle, __func__, &Instance::set_numbers, std::span(of, count), values);
+  return guarded(handle, __func__, &Instance::set_numbers, std::span(of, count), values);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2GetBoolean(fmi2Component handle, const fmi2ValueReference of[],
                                            size_t count, fmi2Boolean values[]) {
-  return of_instance(handle, __func__, &Instance::get_flags<fmi2Boolean>, std::span(of, count),
-                     values);
+  return guarded(handle, __func__, &Instance::get_flags<fmi2Boolean>, std::span(of, count), values);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2GetFMUstate(fmi2Component handle, fmi2FMUstate* to) {
-  return of_instance(handle, __func__, &Instance::save_state, to);
+  return guarded(handle, __func__, &Instance::save_state, to);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2SetFMUstate(fmi2Component handle, fmi2FMUstate from) {
-  return guarded2(handle, "fmi2SetFMUstate", [&](Unit2& unit) {
-    unit.has_ended = unit.has_ended && from == nullptr;
-    return unit.instance->restore_state("fmi2SetFMUstate", from);
-  });
+  return guarded(handle, __func__, &Instance::restore_state, __func__, from);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2FreeFMUstate(fmi2Component handle, fmi2FMUstate* state) {
-  return of_instance(handle, __func__, &Instance::free_state, state);
+  return guarded(handle, __func__, &Instance::free_state, state);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2SerializedFMUstateSize(fmi2Component handle, fmi2FMUstate from,
                                                        size_t* size) {
-  return of_instance(handle, __func__, &Instance::find_state_size, from, size);
+  return guarded(handle, __func__, &Instance::find_state_size, from, size);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2SerializeFMUstate(fmi2Component handle, fmi2FMUstate from,
                                                   fmi2Byte bytes[], size_t size) {
-  return of_instance(handle, __func__, &Instance::write_state, from, bytes, size);
+  return guarded(handle, __func__, &Instance::write_state, from, bytes, size);
 }
 
 PHOTORQUE_EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component handle, const fmi2Byte bytes[],
                                                     size_t size, fmi2FMUstate* to) {
-  return of_instance(handle, __func__, &Instance::read_state, bytes, size, to);
+  return guarded(handle, __func__, &Instance::read_state, bytes, size, to);
 }
 
-// Functions that the unit does not support: they return fmi2Error. They must exist, because
-// importers look up every name.
-#define PHOTORQUE_ABSENT2(name)                                                    \
-  PHOTORQUE_EXPORT fmi2Status name(fmi2Component handle) {                         \
-    return guarded2(handle, #name, [](Unit2& unit) {                               \
-      return unit.instance->refuse(#name " is not offered: modelDescription.xml"); \
-    });                                                                            \
-  }
-PHOTORQUE_ABSENT2(fmi2GetInteger)
-PHOTORQUE_ABSENT2(fmi2GetString)
-PHOTORQUE_ABSENT2(fmi2SetInteger)
-PHOTORQUE_ABSENT2(fmi2SetBoolean)
-PHOTORQUE_ABSENT2(fmi2SetString)
-PHOTORQUE_ABSENT2(fmi2GetDirectionalDerivative)
-PHOTORQUE_ABSENT2(fmi2SetRealInputDerivatives)
-PHOTORQUE_ABSENT2(fmi2GetRealOutputDerivatives)
-PHOTORQUE_ABSENT2(fmi2CancelStep)
-PHOTORQUE_ABSENT2(fmi2GetStatus)
-PHOTORQUE_ABSENT2(fmi2GetIntegerStatus)
-PHOTORQUE_ABSENT2(fmi2GetStringStatus)
+// Functions that the unit does not support.
+PHOTORQUE_ABSENT(fmi2GetInteger)
+PHOTORQUE_ABSENT(fmi2GetString)
+PHOTORQUE_ABSENT(fmi2SetInteger)
+PHOTORQUE_ABSENT(fmi2SetBoolean)
+PHOTORQUE_ABSENT(fmi2SetString)
+PHOTORQUE_ABSENT(fmi2GetDirectionalDerivative)
+PHOTORQUE_ABSENT(fmi2SetRealInputDerivatives)
+PHOTORQUE_ABSENT(fmi2GetRealOutputDerivatives)
+PHOTORQUE_ABSENT(fmi2CancelStep)
+PHOTORQUE_ABSENT(fmi2GetStatus)
+PHOTORQUE_ABSENT(fmi2GetIntegerStatus)
+PHOTORQUE_ABSENT(fmi2GetStringStatus)
 // Functions of model exchange, which the unit does not support.
-PHOTORQUE_ABSENT2(fmi2EnterEventMode)
-PHOTORQUE_ABSENT2(fmi2NewDiscreteStates)
-PHOTORQUE_ABSENT2(fmi2EnterContinuousTimeMode)
-PHOTORQUE_ABSENT2(fmi2CompletedIntegratorStep)
-PHOTORQUE_ABSENT2(fmi2SetTime)
-PHOTORQUE_ABSENT2(fmi2SetContinuousStates)
-PHOTORQUE_ABSENT2(fmi2GetDerivatives)
-PHOTORQUE_ABSENT2(fmi2GetEventIndicators)
-PHOTORQUE_ABSENT2(fmi2GetContinuousStates)
-PHOTORQUE_ABSENT2(fmi2GetNominalsOfContinuousStates)
+PHOTORQUE_ABSENT(fmi2EnterEventMode)
+PHOTORQUE_ABSENT(fmi2NewDiscreteStates)
+PHOTORQUE_ABSENT(fmi2EnterContinuousTimeMode)
+PHOTORQUE_ABSENT(fmi2CompletedIntegratorStep)
+PHOTORQUE_ABSENT(fmi2SetTime)
+PHOTORQUE_ABSENT(fmi2SetContinuousStates)
+PHOTORQUE_ABSENT(fmi2GetDerivatives)
+PHOTORQUE_ABSENT(fmi2GetEventIndicators)
+PHOTORQUE_ABSENT(fmi2GetContinuousStates)
+PHOTORQUE_ABSENT(fmi2GetNominalsOfContinuousStates)
 // NOLINTEND(readability-identifier-naming,cert-dcl50-cpp)

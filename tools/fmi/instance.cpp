@@ -69,7 +69,7 @@ Instance::Instance(const std::string& resource_folder, const std::string& token,
                          resources.token + "\"");
   }
   description_ = describe_unit(resources.options);
-  now_s_ = start_s_ = description_.start_s;
+  now_s_ = start_s_ = planned_start_s_ = description_.start_s;
   stop_s_ = description_.stop_s;
   run_ = std::make_unique<CoSimulation>(resources.options, description_.rate_Hz);
 }
@@ -104,12 +104,18 @@ fmi3Status Instance::begin(std::vector<Vec3> commands) {
   return fmi3OK;
 }
 
-fmi3Status Instance::enter_initialization(double start_s, std::optional<double> stop_s) {
+fmi3Status Instance::set_up(double start_s, std::optional<double> stop_s) {
+  planned_start_s_ = start_s;
+  planned_stop_s_ = stop_s;
+  return fmi3OK;
+}
+
+fmi3Status Instance::enter_initialization() {
   if (mode_ != Mode::instantiated) return refuse("initialised already");
   const double usual_s = description_.stop_s - description_.start_s;
-  now_s_ = start_s_ = start_s;
-  stop_s_ = stop_s.value_or(start_s + usual_s);
-  if (!std::isfinite(start_s) || !(stop_s_ >= start_s)) {
+  now_s_ = start_s_ = planned_start_s_;
+  stop_s_ = planned_stop_s_.value_or(start_s_ + usual_s);
+  if (!std::isfinite(start_s_) || !(stop_s_ >= start_s_)) {
     return refuse("a stop time before the start");
   }
   begin({});
@@ -132,12 +138,13 @@ fmi3Status Instance::reset() {
   mode_ = Mode::instantiated;
   command_body_N_m_ = Vec3::Zero();
   now_s_ = description_.start_s;
-  return fmi3OK;
+  has_ended_ = false;
+  return set_up(description_.start_s, std::nullopt);
 }
 
-fmi3Status Instance::step(double now_s, double step_s, bool& ended) {
+fmi3Status Instance::step(double now_s, double step_s) {
   const double tick_s = 1.0 / description_.rate_Hz;
-  ended = false;
+  has_ended_ = false;
   if (mode_ != Mode::step) return refuse("a step before the end of the initialisation");
   if (!(std::abs(now_s - now_s_) <= 1e-3 * tick_s) || !(step_s > 0.0) ||
       !(now_s + step_s <= stop_s_ + 0.5 * tick_s)) {
@@ -147,8 +154,8 @@ fmi3Status Instance::step(double now_s, double step_s, bool& ended) {
   }
   run_->advance_to(now_s + step_s, command_body_N_m_);
   log_messages();
-  ended = run_->ended();
-  now_s_ = ended ? run_->tick_s() : now_s + step_s;
+  has_ended_ = run_->ended();
+  now_s_ = has_ended_ ? run_->tick_s() : now_s + step_s;
   return fmi3OK;
 }
 
@@ -202,6 +209,7 @@ fmi3Status Instance::save_state(void** to) const {
 fmi3Status Instance::restore_state(const char* function, const void* from) {
   if (from == nullptr) return refuse(std::string(function) + ": no state");
   const auto& state = *static_cast<const UnitState*>(from);
+  has_ended_ = false;
   now_s_ = state.now_s;
   start_s_ = state.start_s;
   stop_s_ = state.stop_s;

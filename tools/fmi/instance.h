@@ -14,6 +14,15 @@
 // Exports a function for importers.
 #define PHOTORQUE_EXPORT extern "C" __attribute__((visibility("default")))
 
+// Exports a function that the unit does not support: it returns an error. It must exist, because
+// importers look up every name.
+#define PHOTORQUE_ABSENT(name)                                               \
+  PHOTORQUE_EXPORT fmi3Status name(void* handle) {                           \
+    return guarded(handle, #name, [](const Instance& instance) {             \
+      return instance.refuse(#name " is not offered: modelDescription.xml"); \
+    });                                                                      \
+  }
+
 namespace photorque::fmi {
 
 enum class Mode { instantiated, initialization, step, terminated };
@@ -40,12 +49,13 @@ class Instance {
   // wrong token or an experiment that cannot run.
   Instance(const std::string& resources, const std::string& token, bool logs_events, LogSink log);
 
-  fmi3Status enter_initialization(double start_s, std::optional<double> stop_s);
+  // Times of the run; without a stop time it lasts as long as that of the experiment.
+  fmi3Status set_up(double start_s, std::optional<double> stop_s);
+  fmi3Status enter_initialization();
   fmi3Status exit_initialization();
   fmi3Status terminate();
   fmi3Status reset();
-  // `ended` is set if the platform has reached its stop, at now_s().
-  fmi3Status step(double now_s, double step_s, bool& ended);
+  fmi3Status step(double now_s, double step_s);
   fmi3Status get_numbers(std::span<const uint32_t> references, double* values) const;
   fmi3Status set_numbers(std::span<const uint32_t> references, const double* values);
   // `Flag`: the Boolean type of the FMI version.
@@ -70,6 +80,8 @@ class Instance {
 
   const UnitDescription& description() const { return description_; }
   double now_s() const { return now_s_; }
+  // Whether the platform has reached its stop in the last step, at now_s().
+  bool has_ended() const { return has_ended_; }
   fmi3Status set_debug_logging(bool on, size_t count, const char* const categories[]);
   fmi3Status refuse(const std::string& message) const;
   // Makes further steps impossible.
@@ -84,12 +96,14 @@ class Instance {
   fmi3Status begin(std::vector<Vec3> commands);
 
   LogSink log_;
-  bool logs_events_ = false;
+  bool logs_events_ = false, has_ended_ = false;
   Mode mode_ = Mode::instantiated;
   UnitDescription description_;
   std::unique_ptr<CoSimulation> run_;
   Vec3 command_body_N_m_ = Vec3::Zero();
   double now_s_ = 0.0, start_s_ = 0.0, stop_s_ = 0.0;
+  double planned_start_s_ = 0.0;
+  std::optional<double> planned_stop_s_;
 };
 
 // Calls a member function of Instance, or a function with an Instance argument, with the arguments.

@@ -15,10 +15,7 @@ typedef void* fmi3InstanceEnvironment;
 typedef void* fmi3FMUState;
 typedef uint32_t fmi3ValueReference;
 typedef double fmi3Float64;
-typedef int32_t fmi3Int32;
-typedef uint64_t fmi3UInt64;
 typedef bool fmi3Boolean;
-typedef bool fmi3Clock;
 typedef uint8_t fmi3Byte;
 typedef const char* fmi3String;
 
