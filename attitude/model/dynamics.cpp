@@ -509,15 +509,6 @@ std::vector<Vec3> disturbance_forces_lab_N(const AttitudeModel& model, const Pla
   return vectors_of_first_lane(Dynamics(model).at(state).force_lab_N);
 }
 
-namespace {
-
-struct NoLaw final : LawOf<NoLaw> {
-  template <class T>
-  void apply(const ParametersAndStates<T>&, EvaluationContext<T>&) const {}
-};
-
-}  // namespace
-
 Disturbance translation() {
   // A deviation of 0.1 m is as important as one of 1 rad.
   constexpr double scale = 0.1;

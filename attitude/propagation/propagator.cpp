@@ -116,7 +116,7 @@ void Propagator::collect_jumps(double from_s) {
   }
   for (size_t d = 0; d < model.disturbances.size(); ++d) {
     const Disturbance& disturbance = model.disturbances[d];
-    for (const Switch& s : disturbance.law->switches(disturbance.parameters, from_s, end_s_)) {
+    for (const Switch& s : disturbance.law->switches(disturbance.parameters)) {
       if (!(s.time_s > from_s && s.time_s < end_s_)) continue;
       int variable = -1;
       if (sensitivity_ && s.parameter >= 0) {
