@@ -167,6 +167,9 @@ std::vector<Disturbance> read_own_disturbances(const Settings& root,
 Vec3 in_plane(const Settings& command, const NumbersKey& key) {
   if (!command.has(key)) return Vec3::Zero();
   const std::vector<double> two = command.get(key);
+  if (two.size() != 2) {
+    throw command.error(key, std::to_string(two.size()) + " numbers", "two, along x and y");
+  }
   return {two[0], two[1], 0.0};
 }
 

@@ -145,6 +145,9 @@ TEST(Sliding, ReportsTheMistake) {
                              "slope_rad = [1, 2, 3]\n"),
                InputError);
   EXPECT_THROW(run_of("[platform]\ntopology = \"planar\"\naxis = \"x\"\n"), InputError);
+  // A force of a command has two components.
+  EXPECT_THROW(end_of_commanded("force_N = [0.4]\n", ""), InputError);
+  EXPECT_THROW(end_of_commanded("force_body_N = [0.4, 0, 0]\n", ""), InputError);
 }
 
 }  // namespace
