@@ -39,9 +39,9 @@ constexpr NumbersKey board_scale("board_scale", Range::positive(),
 constexpr TableKey camera_study("camera_study", "tables and maps of the command `camera`");
 }  // namespace study_key
 
-std::vector<double> read_study_span(const Settings& s, const NumbersKey& key, double low,
-                                    double high) {
-  if (!s.has(key)) return {low, high};
+std::vector<double> read_study_span(const Settings& s, const NumbersKey& key,
+                                    const std::vector<double>& otherwise) {
+  if (!s.has(key)) return otherwise;
   std::vector<double> span = s.get(key);
   if (span.size() != 2 || !(span[0] < span[1])) {
     throw s.error(key, std::to_string(span.size()) + " numbers", "[from, to]");
@@ -105,18 +105,13 @@ Table marker_table(const TrackingCamera& camera) {
     const Vec3& place_m = camera.markers[i].position_body_m;
     Table::Row row = table.row();
     row.set("x_m", place_m.x()).set("y_m", place_m.y()).set("z_m", place_m.z());
-    if (!view) {
-      for (const char* name :
-           {"column_px", "row_px", "electrons", "brightest_pixel_electrons", "centre_error_px"}) {
-        row.set(name, unseen);
-      }
-      continue;
-    }
-    const Spot spot = spot_of(camera, *view);
-    const Mat2 covariance = centre_covariance_px2(spot, pixel_noise(camera));
+    const Spot spot = view ? spot_of(camera, *view) : Spot{{unseen, unseen}, unseen};
     row.set("column_px", spot.centre_px.x()).set("row_px", spot.centre_px.y());
-    row.set("electrons", spot.electrons).set("brightest_pixel_electrons", brightest_pixel(spot));
-    row.set("centre_error_px", std::sqrt(0.5 * covariance.trace()));
+    row.set("electrons", spot.electrons)
+        .set("brightest_pixel_electrons", view ? brightest_pixel(spot) : unseen)
+        .set("centre_error_px",
+             view ? std::sqrt(0.5 * centre_covariance_px2(spot, pixel_noise(camera)).trace())
+                  : unseen);
   }
   return table;
 }
@@ -176,7 +171,7 @@ Table degradation_table(const CameraStudy& study) {
   return table;
 }
 
-Plot tilt_plot(const CameraStudy& study, const Table& degradation) {
+Plot error_plot(const CameraStudy& study, const Table& degradation) {
   Plot plot;
   plot.name = "error_over_tilt";
   plot.title = "Attitude error of one image, worst heading";
@@ -395,7 +390,7 @@ Product camera_product(const CameraStudy& study, const std::function<void(double
   }
   product.tables.push_back(marker_table(study.camera));
   product.tables.push_back(degradation_table(study));
-  product.plots.push_back(tilt_plot(study, product.tables.back()));
+  product.plots.push_back(error_plot(study, product.tables.back()));
   product.tables.push_back(image_table(study, progress));
   const Table& images = product.tables.back();
   if (!images.columns.front().values.empty()) {
@@ -431,19 +426,12 @@ CameraStudy read_camera_study(const Settings& root, const TrackingCamera& camera
   study.rate_body_rad_s = own.get(study_key::rate);
   study.calibration_px = own.get_or(study_key::calibration, study.calibration_px);
   if (own.has(study_key::distortion_error)) {
-    const std::vector<double> numbers = own.get(study_key::distortion_error);
-    if (numbers.size() != 4) {
-      throw own.error(study_key::distortion_error, std::to_string(numbers.size()) + " numbers",
-                      "[k1, k2, p1, p2]");
-    }
-    study.distortion_error = {numbers[0], numbers[1], numbers[2], numbers[3]};
+    study.distortion_error = read_distortion(own, study_key::distortion_error);
   }
   study.images = static_cast<int>(own.get_or(study_key::images, study.images));
   study.grid = static_cast<int>(own.get_or(study_key::grid, study.grid));
-  study.focal_length_m = read_study_span(own, study_key::focal_length, study.focal_length_m[0],
-                                         study.focal_length_m[1]);
-  study.board_scale =
-      read_study_span(own, study_key::board_scale, study.board_scale[0], study.board_scale[1]);
+  study.focal_length_m = read_study_span(own, study_key::focal_length, study.focal_length_m);
+  study.board_scale = read_study_span(own, study_key::board_scale, study.board_scale);
   own.finish();
   return study;
 }

@@ -161,15 +161,6 @@ void check_view(const Settings& s, const TrackingCamera& camera) {
   }
 }
 
-Distortion read_distortion(const Settings& s, const NumbersKey& key) {
-  if (!s.has(key)) return {};
-  const std::vector<double> numbers = s.get(key);
-  if (numbers.size() != 4) {
-    throw s.error(key, std::to_string(numbers.size()) + " numbers", "[k1, k2, p1, p2]");
-  }
-  return {numbers[0], numbers[1], numbers[2], numbers[3]};
-}
-
 // InputError unless the image position increases with the angle up to the corners of the sensor.
 // Otherwise some positions would appear twice.
 void check_distortion(const Settings& s, const NumbersKey& key, const TrackingCamera& camera,
@@ -190,6 +181,15 @@ void check_distortion(const Settings& s, const NumbersKey& key, const TrackingCa
 }
 
 }  // namespace
+
+Distortion read_distortion(const Settings& settings, const NumbersKey& key) {
+  if (!settings.has(key)) return {};
+  const std::vector<double> numbers = settings.get(key);
+  if (numbers.size() != 4) {
+    throw settings.error(key, std::to_string(numbers.size()) + " numbers", "[k1, k2, p1, p2]");
+  }
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
 
 Vec2 Distortion::distorted(const Vec2& u) const {
   const double r2 = u.squaredNorm(), radial = 1.0 + r2 * (k1 + r2 * k2);

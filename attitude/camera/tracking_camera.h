@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/settings/keys.h"
+#include "core/settings/typed_keys.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -39,6 +39,9 @@ struct Distortion {
   // Derivative of the distorted with respect to the undistorted position.
   Eigen::Matrix2d slope(const Vec2& undistorted) const;
 };
+
+// Reads [k1, k2, p1, p2]; zero if the key is absent.
+Distortion read_distortion(const Settings& settings, const NumbersKey& key);
 
 struct TrackingCamera {
   std::vector<Marker> markers;

@@ -130,9 +130,7 @@ const Parameter& parameter_of(const Disturbance& disturbance, std::string_view k
 }
 
 Vec3 vector_of(const Disturbance& disturbance, std::string_view key) {
-  const size_t first = index_of(disturbance, key);
-  const Parameters& p = disturbance.parameters;
-  return {p.at(first).value, p.at(first + 1).value, p.at(first + 2).value};
+  return vector_at(disturbance.parameters, index_of(disturbance, key));
 }
 
 void set_vector(Disturbance& disturbance, std::string_view key, const Vec3& value_SI) {

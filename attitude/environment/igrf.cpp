@@ -26,7 +26,6 @@ struct CoefficientRow {
 
 constexpr CoefficientRow coefficient_rows[] = {
 #include "attitude/environment/igrf14_coefficients.inc"
-#include "core/constants.h"
 };
 
 double at_year(const CoefficientRow& row, double decimal_year) {

@@ -43,20 +43,13 @@ TimeSeries::TimeSeries(std::vector<double> times_s, const std::vector<Vec3>& val
   }
 }
 
-std::vector<double> TimeSeries::ends_within(double from_s, double to_s) const {
-  std::vector<double> ends;
-  for (const double t_s : {first_s(), last_s()}) {
-    if (t_s > from_s && t_s < to_s) ends.push_back(t_s);
-  }
-  return ends;
-}
-
 std::array<double, 2> TimeSeries::at(double time_s, int component) const {
   const std::vector<double>& y = value_[component];
   const std::vector<double>& c = curvature_[component];
-  if (time_s < first_s() || time_s > last_s()) {
+  const auto [first_s, last_s] = ends_s();
+  if (time_s < first_s || time_s > last_s) {
     if (outside_ == Outside::zero) return {0.0, 0.0};
-    return {time_s < first_s() ? y.front() : y.back(), 0.0};
+    return {time_s < first_s ? y.front() : y.back(), 0.0};
   }
   const auto after = std::upper_bound(times_s_.begin(), times_s_.end() - 1, time_s);
   const size_t i = static_cast<size_t>(after - times_s_.begin()) - 1;

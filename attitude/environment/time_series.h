@@ -23,10 +23,8 @@ class TimeSeries {
   TimeSeries(std::vector<double> times_s, const std::vector<Vec3>& values,
              Outside outside = Outside::hold);
 
-  double first_s() const { return times_s_.front(); }
-  double last_s() const { return times_s_.back(); }
-  // The first and the last time, if they are in (from_s, to_s). The series is not smooth there.
-  std::vector<double> ends_within(double from_s, double to_s) const;
+  // The first and the last time, at which the series is not smooth.
+  std::array<double, 2> ends_s() const { return {times_s_.front(), times_s_.back()}; }
 
   // Value and time derivative of one component.
   std::array<double, 2> at(double time_s, int component) const;

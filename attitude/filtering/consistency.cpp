@@ -104,10 +104,15 @@ void RunEnsemble::add(const Estimation& estimation, const TruthTrack& truth) {
   sum(gyro_, estimation.gyro);
 }
 
-std::vector<double> RunEnsemble::mean_of(const std::vector<double>& sums) const {
-  std::vector<double> means = sums;
-  for (double& mean : means) mean /= std::max(1, runs_);
-  return means;
+std::vector<double> RunEnsemble::mean_of(std::vector<double> sums) const {
+  for (double& sum : sums) sum /= std::max(1, runs_);
+  return sums;
+}
+
+std::vector<double> RunEnsemble::rms_of(const std::vector<double>& squares) const {
+  std::vector<double> rms = mean_of(squares);
+  for (double& x : rms) x = std::sqrt(x);
+  return rms;
 }
 
 Band RunEnsemble::band() const {
@@ -119,18 +124,6 @@ double RunEnsemble::part_in_band(const std::vector<double>& nees, size_t from) c
   double inside = 0.0;
   for (size_t i = from; i < nees.size(); ++i) inside += band().holds(nees[i]) ? 1.0 : 0.0;
   return nees.size() > from ? inside / static_cast<double>(nees.size() - from) : 0.0;
-}
-
-std::vector<double> RunEnsemble::rms_filtered_rad() const {
-  std::vector<double> rms = mean_of(square_filtered_);
-  for (double& x : rms) x = std::sqrt(x);
-  return rms;
-}
-
-std::vector<double> RunEnsemble::rms_smoothed_rad() const {
-  std::vector<double> rms = mean_of(square_smoothed_);
-  for (double& x : rms) x = std::sqrt(x);
-  return rms;
 }
 
 }  // namespace photorque

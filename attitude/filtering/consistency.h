@@ -61,13 +61,14 @@ class RunEnsemble {
   // Fraction of the rows from `from` on whose mean is in the band.
   double part_in_band(const std::vector<double>& nees, size_t from) const;
   // Root-mean-square attitude errors over the runs [rad].
-  std::vector<double> rms_filtered_rad() const;
-  std::vector<double> rms_smoothed_rad() const;
+  std::vector<double> rms_filtered_rad() const { return rms_of(square_filtered_); }
+  std::vector<double> rms_smoothed_rad() const { return rms_of(square_smoothed_); }
   const InnovationSum& attitude() const { return attitude_; }
   const InnovationSum& gyro() const { return gyro_; }
 
  private:
-  std::vector<double> mean_of(const std::vector<double>& sums) const;
+  std::vector<double> mean_of(std::vector<double> sums) const;
+  std::vector<double> rms_of(const std::vector<double>& squares) const;
 
   int runs_ = 0;
   int numbers_ = 6;

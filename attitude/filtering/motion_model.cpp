@@ -96,13 +96,10 @@ FilterState MotionModel::start(double time_s, const Quat& lab_from_body,
   state.covariance = MatX::Zero(size_, size_);
   const Mat3 c = lab_from_body.toRotationMatrix();
   state.covariance.topLeftCorner<3, 3>() = c.transpose() * attitude_lab_rad2 * c;
-  const double rate_rad2_s2 = std::pow(settings_.rate_sigma_rad_s, 2);
-  for (int k = 0; k < 3; ++k) state.covariance(rate + k, rate + k) = rate_rad2_s2;
+  state.covariance.block<3, 3>(rate, rate) = std::pow(settings_.rate_sigma_rad_s, 2) * free_axes();
   if (model_.platform.turns_about_one_axis()) {
-    const Mat3 along = model_.platform.axis * model_.platform.axis.transpose();
-    state.covariance.block<3, 3>(rate, rate) = rate_rad2_s2 * along;
     const double about_rad2 = model_.platform.axis.dot(attitude_lab_rad2 * model_.platform.axis);
-    state.covariance.topLeftCorner<3, 3>() = about_rad2 * along;
+    state.covariance.topLeftCorner<3, 3>() = about_rad2 * free_axes();
   }
   // Extra states start as in the model: at rest relative to the platform.
   for (Eigen::Index i = 0; i < prior_sigma_.size(); ++i) {
@@ -113,14 +110,16 @@ FilterState MotionModel::start(double time_s, const Quat& lab_from_body,
 }
 
 void MotionModel::reset_after_kick(FilterState& state) const {
-  Mat3 about = Mat3::Identity();
-  if (model_.platform.turns_about_one_axis()) {
-    about = model_.platform.axis * model_.platform.axis.transpose();
-  }
   state.covariance.topRows(rate + 3).setZero();
   state.covariance.leftCols(rate + 3).setZero();
-  state.covariance.topLeftCorner<3, 3>() = about;
-  state.covariance.block<3, 3>(rate, rate) = std::pow(settings_.rate_sigma_rad_s, 2) * about;
+  state.covariance.topLeftCorner<3, 3>() = free_axes();
+  state.covariance.block<3, 3>(rate, rate) = std::pow(settings_.rate_sigma_rad_s, 2) * free_axes();
+}
+
+// Projection onto the axes about which the platform can turn.
+Mat3 MotionModel::free_axes() const {
+  if (!model_.platform.turns_about_one_axis()) return Mat3::Identity();
+  return model_.platform.axis * model_.platform.axis.transpose();
 }
 
 void MotionModel::refresh(FilterState& state) const {
@@ -143,15 +142,15 @@ MatX MotionModel::rate_matrix(const FilterState& state) const {
   a.topLeftCorner<3, 3>() = -skew(state.mean.rate_body_rad_s);
   a.block<3, 3>(attitude, rate).setIdentity();
   if (settings_.motion != Motion::disturbances) return a;
-  const MatX rates = derivatives_of(state, false).rates;
+  const MatX rates = derivatives_of(state, false);
   a.middleRows<3>(rate) = rates.middleRows<3>(component::rate);
   a.middleRows(extra, extras_) = rates.middleRows(component::extra, extras_);
   return a;
 }
 
 VecX MotionModel::right_hand_side(const FilterState& state, const VecX& y, double time_s) const {
-  std::vector<Lanes> lanes, rates(static_cast<size_t>(y.size()));
-  for (const double x : y) lanes.emplace_back(x);
+  const std::vector<Lanes> lanes(y.begin(), y.end());
+  std::vector<Lanes> rates(lanes.size());
   state.dynamics->rates(time_s, model_.schedule.at(time_s), lanes.data(), rates.data());
   VecX out(y.size());
   for (Eigen::Index i = 0; i < y.size(); ++i) out[i] = rates[static_cast<size_t>(i)][0];
@@ -196,18 +195,19 @@ void MotionModel::step(FilterState& state, double length_s) const {
 }
 
 void MotionModel::add_noise(MatX& covariance, double length_s) const {
-  Mat3 about = Mat3::Identity();
-  if (model_.platform.turns_about_one_axis()) {
-    about = model_.platform.axis * model_.platform.axis.transpose();
-  }
+  const Mat3 about = free_axes();
   const double q = std::pow(settings_.rate_walk_rad_s_rts, 2), h = length_s;
   covariance.topLeftCorner<3, 3>() += q * h * h * h / 3.0 * about;
   covariance.block<3, 3>(attitude, rate) += 0.5 * q * h * h * about;
   covariance.block<3, 3>(rate, attitude) += 0.5 * q * h * h * about;
   covariance.block<3, 3>(rate, rate) += q * h * about;
+  add_parameter_walks(covariance, h);
+}
+
+void MotionModel::add_parameter_walks(MatX& covariance, double length_s) const {
   for (size_t i = 0; i < places_.size(); ++i) {
     const Eigen::Index at = first_parameter() + static_cast<Eigen::Index>(i);
-    covariance(at, at) += std::pow(places_[i].walk_rts, 2) * h;
+    covariance(at, at) += std::pow(places_[i].walk_rts, 2) * length_s;
   }
 }
 
@@ -228,7 +228,7 @@ void MotionModel::drive(FilterState& state, double length_s, const Vec3& gyro_ra
   const Vec3 turn_rad = 0.5 * h * (state.mean.rate_body_rad_s + end.mean.rate_body_rad_s);
   end.mean.lab_from_body = (state.mean.lab_from_body * turn_by(turn_rad)).normalized();
   // Errors of the new rate result only from those of the parameters and from the gyro's noise.
-  MatX by_before = MatX::Identity(size_, size_), noise = MatX::Zero(size_, size_);
+  MatX by_before = MatX::Identity(size_, size_);
   const Mat3 back = turn_by(-turn_rad).toRotationMatrix();
   MatX new_rate = MatX::Zero(3, size_);
   const Eigen::Index own = size_ - first_parameter();
@@ -243,11 +243,8 @@ void MotionModel::drive(FilterState& state, double length_s, const Vec3& gyro_ra
   enters.topRows<3>() = by_rates * inverse;
   enters.middleRows<3>(rate) = inverse;
   const double gyro_noise_rad_s = sensors_.gyro ? sensors_.gyro->noise_rad_s : 0.0;
-  noise = std::pow(gyro_noise_rad_s, 2) * enters * enters.transpose();
-  for (size_t i = 0; i < places_.size(); ++i) {
-    const Eigen::Index at = first_parameter() + static_cast<Eigen::Index>(i);
-    noise(at, at) += std::pow(places_[i].walk_rts, 2) * h;
-  }
+  MatX noise = std::pow(gyro_noise_rad_s, 2) * enters * enters.transpose();
+  add_parameter_walks(noise, h);
   state = std::move(end);
   whole.covariance = by_before * whole.covariance * by_before.transpose() + noise;
   whole.phi = by_before * whole.phi;
@@ -315,16 +312,6 @@ VecX MotionModel::difference(const FilterState& to, const FilterState& from) con
 
 namespace {
 
-std::array<ZeroOrderHold, Lanes::count> in_all_lanes(const ZeroOrderHold& held) {
-  std::array<ZeroOrderHold, Lanes::count> all;
-  all.fill(held);
-  return all;
-}
-
-std::vector<Lanes> in_lanes(const std::vector<double>& y) {
-  return {y.begin(), y.end()};
-}
-
 // ∂q/∂θ for q ⊗ exp(θ): components w, x, y, z.
 Eigen::Matrix<double, 4, 3> quaternion_by_turn(const Quat& q) {
   Eigen::Matrix<double, 4, 3> g;
@@ -334,11 +321,12 @@ Eigen::Matrix<double, 4, 3> quaternion_by_turn(const Quat& q) {
 
 }  // namespace
 
-MotionModel::Derivatives MotionModel::derivatives_of(const FilterState& state,
-                                                     bool of_readings) const {
+MatX MotionModel::derivatives_of(const FilterState& state, bool of_readings) const {
   const Dynamics& dynamics = *state.dynamics;
-  const std::vector<Lanes> y = in_lanes(to_vector(state.mean));
-  const ZeroOrderHold held = model_.schedule.at(state.mean.time_s);
+  const std::vector<double> mean = to_vector(state.mean);
+  const std::vector<Lanes> y(mean.begin(), mean.end());
+  std::array<ZeroOrderHold, Lanes::count> held;
+  held.fill(model_.schedule.at(state.mean.time_s));
   const int components = dynamics.size();
   const int rows = of_readings ? Dynamics::reading_count : components;
   // Order: attitude and rate, extra states, parameters.
@@ -363,10 +351,9 @@ MotionModel::Derivatives MotionModel::derivatives_of(const FilterState& state,
       }
     }
     if (of_readings) {
-      dynamics.reading_derivatives(state.mean.time_s, in_all_lanes(held), y.data(), block,
-                                   out.data(), room);
+      dynamics.reading_derivatives(state.mean.time_s, held, y.data(), block, out.data(), room);
     } else {
-      dynamics.derivatives(state.mean.time_s, held, y.data(), block, out.data(), room);
+      dynamics.derivatives(state.mean.time_s, held[0], y.data(), block, out.data(), room);
     }
     for (int r = 0; r < rows; ++r) {
       for (int k = 0; k < count; ++k) {
@@ -378,21 +365,13 @@ MotionModel::Derivatives MotionModel::derivatives_of(const FilterState& state,
   MatX by_error(rows, size_);
   by_error.leftCols<3>() = by_variable.leftCols<4>() * quaternion_by_turn(state.mean.lab_from_body);
   by_error.rightCols(size_ - 3) = by_variable.rightCols(size_ - 3);
-  if (of_readings) return {{}, by_error};
-  return {by_error, {}};
+  return by_error;
 }
 
 MotionModel::Prediction MotionModel::predicted_readings(const FilterState& state) const {
-  const std::vector<Lanes> y = in_lanes(to_vector(state.mean));
-  const auto held = in_all_lanes(model_.schedule.at(state.mean.time_s));
-  const Dynamics::Instants now = state.dynamics->at(state.mean.time_s, held, y.data());
-  Prediction prediction;
-  for (int k = 0; k < 3; ++k) {
-    prediction.gyro_rad_s[k] = now.gyro_rad_s[k][0];
-    prediction.camera_error_rad[k] = now.camera_error_rad[k][0];
-  }
-  prediction.camera_delay_s = now.camera_delay_s[0];
-  prediction.derivative = derivatives_of(state, true).readings;
+  const Dynamics::Instants now = state.dynamics->at(state.mean);
+  Prediction prediction{lane_of(now.gyro_rad_s, 0), lane_of(now.camera_error_rad, 0),
+                        now.camera_delay_s[0], derivatives_of(state, true)};
   const VecX moved = prediction.derivative.rightCols(state.parameters.size()) *
                      (state.parameters - state.reference);
   prediction.gyro_rad_s += moved.segment<3>(0);
@@ -459,10 +438,7 @@ Vec3 MotionModel::inertial_rate_rad_s(const FilterState& state) const {
   const Dynamics dynamics(model);
   PlatformState mean = state.mean;
   mean.extra.resize(static_cast<size_t>(dynamics.size() - component::extra));
-  const std::vector<Lanes> y = in_lanes(to_vector(mean));
-  const auto held = in_all_lanes(model_.schedule.at(mean.time_s));
-  const Dynamics::Instants now = dynamics.at(mean.time_s, held, y.data());
-  return lane_of(now.gyro_rad_s, 0);
+  return lane_of(dynamics.at(mean).gyro_rad_s, 0);
 }
 
 double MotionModel::camera_delay_s() const {

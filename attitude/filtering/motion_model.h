@@ -97,24 +97,22 @@ class MotionModel {
   double camera_delay_s() const;
 
  private:
-  // Derivatives with respect to the error state: of the rates (rows are the components of Dynamics)
-  // or of the readings (Dynamics::reading_count rows).
-  struct Derivatives {
-    MatX rates;
-    MatX readings;
-  };
   struct Prediction {
     Vec3 gyro_rad_s;
     Vec3 camera_error_rad;
     double camera_delay_s;
     MatX derivative;  // Dynamics::reading_count rows
   };
-  Derivatives derivatives_of(const FilterState& state, bool of_readings) const;
+  // Derivatives with respect to the error state: of the rates (rows are the components of Dynamics)
+  // or of the readings (Dynamics::reading_count rows).
+  MatX derivatives_of(const FilterState& state, bool of_readings) const;
   Prediction predicted_readings(const FilterState& state) const;
   MatX rate_matrix(const FilterState& state) const;
   double step_length_s(const FilterState& state, double wanted_s) const;
   void step(FilterState& state, double length_s) const;
+  Mat3 free_axes() const;
   void add_noise(MatX& covariance, double length_s) const;
+  void add_parameter_walks(MatX& covariance, double length_s) const;
   void drive(FilterState& state, double length_s, const Vec3& gyro_rad_s, Transition& whole) const;
   VecX right_hand_side(const FilterState& state, const VecX& y, double time_s) const;
   void refresh(FilterState& state) const;

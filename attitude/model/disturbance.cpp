@@ -26,44 +26,39 @@ int first_of_axis(const Disturbance& disturbance) {
                                             : static_cast<int>(at - disturbance.parameters.begin());
 }
 
-Vec3 axis_at(const Disturbance& disturbance, int first) {
-  const Parameters& p = disturbance.parameters;
-  const auto i = static_cast<size_t>(first);
-  return {p.at(i).value, p.at(i + 1).value, p.at(i + 2).value};
+}  // namespace
+
+std::vector<Switch> switches_at(std::span<const double> times_s) {
+  std::vector<Switch> all;
+  for (const double t_s : times_s) all.push_back({t_s});
+  return all;
 }
 
-}  // namespace
+Vec3 vector_at(const Parameters& parameters, size_t first) {
+  return {parameters.at(first).value, parameters.at(first + 1).value,
+          parameters.at(first + 2).value};
+}
 
 Vec3 bound_axis(const Disturbance& disturbance, const ExtraState& state) {
   const int first = first_of_axis(disturbance);
   if (first < 0 || state.per_body_rate.isZero()) return state.per_body_rate;
-  return axis_at(disturbance, first).normalized();
+  return vector_at(disturbance.parameters, static_cast<size_t>(first)).normalized();
 }
 
 double bound_rate_slope(const Disturbance& disturbance, const ExtraState& state, int parameter,
                         const Vec3& rate_body_rad_s) {
   const int first = first_of_axis(disturbance), component = parameter - first;
   if (first < 0 || component < 0 || component > 2 || state.per_body_rate.isZero()) return 0.0;
-  const Vec3 axis = axis_at(disturbance, first), unit = axis.normalized();
+  const Vec3 axis = vector_at(disturbance.parameters, static_cast<size_t>(first)),
+             unit = axis.normalized();
   return (rate_body_rad_s[component] - unit[component] * unit.dot(rate_body_rad_s)) / axis.norm();
 }
 
 PlacedParameters scalar_parameter(const Settings& settings, const ScalarKey& key) {
-  if (key.otherwise_SI) {
-    return scalar_parameter_or(settings, key, *key.otherwise_SI, key.range);
-  }
-  return scalar_parameter(settings, key, key.range);
-}
-
-PlacedParameters scalar_parameter(const Settings& settings, ScalarKey key, Range range) {
-  const Uncertain x = settings.uncertain(key.name, range);
+  const bool is_default = key.otherwise_SI && !settings.has(key.name);
+  const Uncertain x =
+      is_default ? Uncertain{*key.otherwise_SI} : settings.uncertain(key.name, key.range);
   return {key.first, {{key.name, -1, x.value, x.sigma}}};
-}
-
-PlacedParameters scalar_parameter_or(const Settings& settings, ScalarKey key, double otherwise_SI,
-                                     Range range) {
-  if (settings.has(key.name)) return scalar_parameter(settings, key, range);
-  return {key.first, {{key.name, -1, otherwise_SI, 0.0}}};
 }
 
 PlacedParameters vector_parameter(const Settings& settings, const VectorKey& key) {
@@ -71,6 +66,14 @@ PlacedParameters vector_parameter(const Settings& settings, const VectorKey& key
   Parameters all;
   for (int i = 0; i < 3; ++i) all.push_back({key.name, i, v.value[i], v.sigma[i]});
   return {key.first, all};
+}
+
+PlacedParameters direction_parameter(const Settings& settings, const VectorKey& key) {
+  PlacedParameters axis = vector_parameter(settings, key);
+  if (!(vector_at(axis.parameters, 0).norm() > 0.0)) {
+    throw settings.error(key.name, "a zero vector", "a direction");
+  }
+  return axis;
 }
 
 PlacedParameters array_parameter(const Settings& settings, const std::string& key, size_t size,

@@ -200,6 +200,11 @@ struct KeyOf {
     copy.required = false;
     return copy;
   }
+  constexpr KeyOf within(Range admitted) const {
+    KeyOf copy = *this;
+    copy.range = admitted;
+    return copy;
+  }
 
   // The key as declared in the table of keys. Keys of up to six numbers may have a sigma for each.
   operator Key() const requires(size <= 6) {
@@ -261,6 +266,8 @@ struct Switch {
   double time_s = 0.0;
   int parameter = -1;  // index of the parameter that is this time, −1 if none is
 };
+// Switches at times that are not parameters.
+std::vector<Switch> switches_at(std::span<const double> times_s);
 
 // A law: immutable, without state, called from many threads. It must be smooth between switches; a
 // smoother law allows longer steps. Derive from TorqueLaw or LawOf below.
@@ -272,10 +279,9 @@ class Law {
   virtual void act(const ParametersAndStates<DualLanes>& own,
                    EvaluationContext<DualLanes>& now) const = 0;
 
-  // Jumps in (from_s, to_s), in any order. A law that jumps uses active_from() or a similar
-  // function that treats each lane separately.
-  virtual std::vector<Switch> switches(std::span<const Parameter> /*parameters*/, double /*from_s*/,
-                                       double /*to_s*/) const {
+  // All jumps, in any order; the propagator uses those within the run. A law that jumps uses
+  // active_from() or a similar function that treats each lane separately.
+  virtual std::vector<Switch> switches(std::span<const Parameter> /*parameters*/) const {
     return {};
   }
 };
@@ -296,6 +302,12 @@ class LawOf : public Law {
 
  private:
   const Derived& self() const { return static_cast<const Derived&>(*this); }
+};
+
+// A law without an effect on the evaluation context.
+struct NoLaw final : LawOf<NoLaw> {
+  template <class T>
+  void apply(const ParametersAndStates<T>&, EvaluationContext<T>&) const {}
 };
 
 // For laws that are only a torque: Derived has
@@ -342,8 +354,8 @@ struct Disturbance {
   bool per_recording = false;
 };
 
-// Parameters from settings, in SI, with their sigma. If the key is missing: `otherwise_SI` with
-// sigma 0 where it is given, else InputError.
+// Parameters from settings, in SI, with their sigma. If the key is missing: its default with sigma
+// 0 where it has one, else InputError.
 using Parameters = std::vector<Parameter>;
 // Parameters and the position that their law expects, which make_disturbance() checks.
 struct PlacedParameters {
@@ -352,11 +364,10 @@ struct PlacedParameters {
 };
 // One number.
 PlacedParameters scalar_parameter(const Settings& settings, const ScalarKey& key);
-PlacedParameters scalar_parameter(const Settings& settings, ScalarKey key, Range range);
-PlacedParameters scalar_parameter_or(const Settings& settings, ScalarKey key, double otherwise_SI,
-                                     Range range = {});
 // Three numbers.
 PlacedParameters vector_parameter(const Settings& settings, const VectorKey& key);
+// Three numbers that are not all zero. InputError for a zero vector.
+PlacedParameters direction_parameter(const Settings& settings, const VectorKey& key);
 // `size` numbers, e.g. the six of a symmetric matrix.
 PlacedParameters array_parameter(const Settings& settings, const std::string& key, size_t size,
                                  int first = 0);
@@ -379,6 +390,9 @@ std::filesystem::path file_of(const Settings& settings, std::string_view key);
 // Parameters that were computed, for example a compliance from the dimensions of a beam.
 PlacedParameters fixed_parameter(const std::string& key, std::span<const double> values_SI,
                                  int first = 0);
+
+// The values of three parameters from index `first` on.
+Vec3 vector_at(const Parameters& parameters, size_t first);
 
 // Appends `group` to `parameters`. NumericalError if the law expects the group at another position.
 void append(Parameters& parameters, const PlacedParameters& group);

@@ -50,6 +50,12 @@ PlatformState to_state(double time_s, std::span<const double> y) {
   return state;
 }
 
+std::vector<double> lane_of(std::span<const Lanes> y, int lane) {
+  std::vector<double> components;
+  for (const Lanes& x : y) components.push_back(x[lane]);
+  return components;
+}
+
 double command_delay_s(std::span<const Disturbance> disturbances) {
   double sum_s = 0.0;
   for (const Disturbance& disturbance : disturbances) sum_s += disturbance.command_delay_s;
@@ -111,13 +117,9 @@ Dynamics::Offsets Dynamics::tried(const PlatformState& state,
   std::vector<Lanes> rates(y.size(), Lanes(0.0));
   EvaluationContext<Lanes> now = begin(Lanes(0.0), broadcast({}, 0.0), y.data());
   const auto act = [&](size_t d) {
-    const Layout& own = layout_[d];
     const bool is_instrument = model_.disturbances[d].stage == Stage::measurement;
-    const std::vector<Lanes>& parameters = is_instrument ? instruments : parameters_;
     now.inertia_changed = false;
-    model_.disturbances[d].law->act({parameters.data() + own.first_parameter,
-                                     y.data() + own.first_state, rates.data() + own.first_state},
-                                    now);
+    apply_law(d, is_instrument ? instruments : parameters_, y.data(), rates.data(), now);
     changes_inertia_[d] = changes_inertia_[d] || now.inertia_changed;
   };
   run_stages(order_, now, act);
@@ -329,13 +331,16 @@ void Dynamics::rates(const Lanes& time_s, const ZeroOrderHold& held, const Lanes
                      Lanes* rates) const {
   if (order_.empty()) return free_body_rates(broadcast(held, time_s), y, rates);
   EvaluationContext<Lanes> now = begin(time_s, broadcast(held, time_s), y);
-  run_stages(order_, now, [&](size_t d) {
-    const Layout& own = layout_[d];
-    model_.disturbances[d].law->act(
-        {parameters_.data() + own.first_parameter, y + own.first_state, rates + own.first_state},
-        now);
-  });
+  run_stages(order_, now, [&](size_t d) { apply_law(d, parameters_, y, rates, now); });
   solve(now, y, rates);
+}
+
+// Applies the law of disturbance d to values without derivatives.
+void Dynamics::apply_law(size_t d, const std::vector<Lanes>& parameters, const Lanes* y,
+                         Lanes* rates, EvaluationContext<Lanes>& now) const {
+  const Layout& own = layout_[d];
+  model_.disturbances[d].law->act(
+      {parameters.data() + own.first_parameter, y + own.first_state, rates + own.first_state}, now);
 }
 
 Dynamics::Instants Dynamics::at(const Lanes& time_s,
@@ -347,12 +352,9 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s,
   result.rates.assign(static_cast<size_t>(size_), Lanes(0.0));
   EvaluationContext<Lanes> now = begin(time_s, gather(held, time_s), y);
   const auto act = [&](size_t d) {
-    const Layout& own = layout_[d];
     const Vec3Of<Lanes> before = now.torque_body_N_m, force_before = now.force_lab_N;
     const Mat3Of<Lanes> attached = now.detached_inertia_kg_m2;
-    model_.disturbances[d].law->act({parameters_.data() + own.first_parameter, y + own.first_state,
-                                     result.rates.data() + own.first_state},
-                                    now);
+    apply_law(d, parameters_, y, result.rates.data(), now);
     result.force_lab_N[d] = now.force_lab_N - force_before;
     // A detached part that moves with the body exerts only the gyroscopic torque of a rigid body,
     // which solve() does not include for detached parts.
@@ -508,15 +510,6 @@ std::vector<Vec3> disturbance_torques_body_N_m(const AttitudeModel& model,
 std::vector<Vec3> disturbance_forces_lab_N(const AttitudeModel& model, const PlatformState& state) {
   return vectors_of_first_lane(Dynamics(model).at(state).force_lab_N);
 }
-
-namespace {
-
-struct NoLaw final : LawOf<NoLaw> {
-  template <class T>
-  void apply(const ParametersAndStates<T>&, EvaluationContext<T>&) const {}
-};
-
-}  // namespace
 
 Disturbance translation() {
   // A deviation of 0.1 m is as important as one of 1 rad.

@@ -41,6 +41,8 @@ inline constexpr int attitude = 0, rate = 4, charge = 7, extra = 8;
 std::vector<double> to_vector(const PlatformState& state);
 // The state of such a vector, with a normalised quaternion.
 PlatformState to_state(double time_s, std::span<const double> y);
+// The components in one lane of such vectors.
+std::vector<double> lane_of(std::span<const Lanes> y, int lane);
 
 // The additional states of a platform that slides: position and velocity in the lab's xy plane, as
 // the extra states of a disturbance without a torque. The model of such a platform must contain it.
@@ -93,11 +95,6 @@ class Dynamics {
   // ∂(dy/dt)/∂(variable k) of every component c at derivatives[c·block + k].
   void derivatives(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y,
                    const Block& block, Lanes* derivatives, Workspace& room) const;
-  void derivatives(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y,
-                   const Block& block, Lanes* derivatives) const {
-    Workspace room;
-    this->derivatives(time_s, held, y, block, derivatives, room);
-  }
 
   // All quantities at eight instants. `held`, the commands of each instant, may differ from lane to
   // lane.
@@ -165,6 +162,8 @@ class Dynamics {
   Vec3Of<T> about_axis(const Vec3Of<T>& torque_N_m, const Mat3Of<T>& inertia_kg_m2) const;
   template <class T>
   void solve(const EvaluationContext<T>& now, const T* y, T* rates) const;
+  void apply_law(size_t d, const std::vector<Lanes>& parameters, const Lanes* y, Lanes* rates,
+                 EvaluationContext<Lanes>& now) const;
   void try_laws();
   Offsets tried(const PlatformState& state, const std::vector<Lanes>& instruments);
   void free_body_rates(const Command& command, const Lanes* y, Lanes* rates) const;

@@ -2,7 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <sstream>
+
+#include "core/text/format.h"
 
 namespace photorque {
 
@@ -12,15 +13,14 @@ void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const 
     throw InputError(where, key, "a matrix that is not symmetric", "a symmetric matrix");
   }
   const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(inertia_kg_m2).eigenvalues();
-  std::ostringstream found;
-  found << "principal moments " << principal[0] << ", " << principal[1] << ", " << principal[2];
+  const std::string found =
+      printed("principal moments %g, %g, %g", principal[0], principal[1], principal[2]);
   if (!(principal[0] > 0.0)) {
-    throw InputError(where, key, found.str(), "three positive principal moments");
+    throw InputError(where, key, found, "three positive principal moments");
   }
   // Rounded tables of thin plates and rods are near the bound: an excess of 0.1 % is accepted.
   if (principal[2] > (principal[0] + principal[1]) * (1.0 + 1e-3)) {
-    throw InputError(where, key, found.str(),
-                     "moments none of which exceeds the sum of the other two");
+    throw InputError(where, key, found, "moments none of which exceeds the sum of the other two");
   }
 }
 

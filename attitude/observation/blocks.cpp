@@ -47,7 +47,7 @@ size_t instants_needed(const Observation& seen, double fastest_rad_s) {
       const Measures measures = channel_traits(channel).measures;
       if (measures == Measures::rate) size = fastest_rad_s;
       if (measures != Measures::rate && measures != Measures::angle) {
-        size = std::abs(seen.scalar[static_cast<size_t>(channel - vector_channels)].value[block]);
+        size = std::abs(seen.value_of(block, channel));
       }
       const double allowed = of_noise * seen.noise.of(channel).level / std::sqrt(rows);
       if (fourth * turn_rad2 * turn_rad2 * size > allowed) return 3;

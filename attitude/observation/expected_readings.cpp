@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "attitude/propagation/stage_system.h"
+
 namespace photorque {
 
 // The parts of ExpectedReadings.
@@ -76,21 +78,19 @@ class AccelerationSlopes {
     const auto partial = [&](size_t component, size_t k) {
       return partials[component * width + k];
     };
+    Dynamics::Workspace room;
     const auto evaluate = [&](const Dynamics::Block& block) {
       dynamics.derivatives(samples.time_s, samples.held[0], samples.y.data(), block,
-                           partials.data());
+                           partials.data(), room);
     };
-    for (size_t first = 0; first < size; first += width) {
-      Dynamics::Block block;
-      for (size_t k = 0; k < width && first + k < size; ++k) {
-        block.state[k] = static_cast<int>(first + k);
-      }
+    for (const Dynamics::Block& block : state_blocks(dynamics)) {
       evaluate(block);
-      for (size_t k = 0; k < width && first + k < size; ++k) {
+      for (size_t k = 0; k < width; ++k) {
+        if (block.state[k] < 0) continue;
+        const Lanes* by = samples.derivatives.data() + static_cast<size_t>(block.state[k]) * count_;
         for (size_t v = 0; v < count_; ++v) {
           for (size_t a = 0; a < 3; ++a) {
-            all_[a * count_ + v] +=
-                partial(component::rate + a, k) * samples.derivatives[(first + k) * count_ + v];
+            all_[a * count_ + v] += partial(component::rate + a, k) * by[v];
           }
         }
       }

@@ -132,6 +132,20 @@ size_t count_of(const std::vector<Deviations>& runs) {
   return count;
 }
 
+// The mean of a function of the deviations in all runs.
+template <class Function>
+double mean_over(const std::vector<Deviations>& runs, const Function& f) {
+  double sum = 0.0;
+  for (const Deviations& run : runs) {
+    for (const double x : run.size) sum += f(x);
+  }
+  return sum / static_cast<double>(count_of(runs));
+}
+
+double mean_square(const std::vector<Deviations>& runs) {
+  return mean_over(runs, [](double x) { return x * x; });
+}
+
 double weight_of(double size, double degrees, double scale) {
   const double x = size / scale;
   return (degrees + 1.0) / (degrees + x * x);
@@ -151,12 +165,8 @@ double max_likelihood_scale(const std::vector<Deviations>& runs, double degrees,
   constexpr int most_steps = 100;
   constexpr double close = 1e-5;
   for (int step = 0; step < most_steps; ++step) {
-    double sum = 0.0, count = 0.0;
-    for (const Deviations& run : runs) {
-      for (const double x : run.size) sum += weight_of(x, degrees, scale) * x * x;
-      count += static_cast<double>(run.count());
-    }
-    const double next = std::sqrt(sum / count);
+    const double next =
+        std::sqrt(mean_over(runs, [&](double x) { return weight_of(x, degrees, scale) * x * x; }));
     const bool is_there = std::abs(next - scale) < close * scale;
     scale = next;
     if (is_there) break;
@@ -166,24 +176,24 @@ double max_likelihood_scale(const std::vector<Deviations>& runs, double degrees,
 
 // −2 ln of the likelihood under Student's t.
 double under_t(const std::vector<Deviations>& runs, double degrees, double scale) {
-  double sum = 0.0, count = 0.0;
+  double sum = 0.0;
   for (const Deviations& run : runs) {
     for (const double x : run.size) {
       sum += (degrees + 1.0) * std::log1p(x * x / (degrees * scale * scale));
     }
-    count += static_cast<double>(run.count());
   }
+  const auto count = static_cast<double>(count_of(runs));
   const double norm = std::lgamma(0.5 * (degrees + 1.0)) - std::lgamma(0.5 * degrees) -
                       0.5 * std::log(degrees * pi * scale * scale);
   return sum - 2.0 * count * norm;
 }
 
 double under_normal(const std::vector<Deviations>& runs) {
-  double sum = 0.0, count = 0.0;
+  double sum = 0.0;
   for (const Deviations& run : runs) {
     for (const double x : run.size) sum += x * x;
-    count += static_cast<double>(run.count());
   }
+  const auto count = static_cast<double>(count_of(runs));
   return count * (std::log(2.0 * pi * sum / count) + 1.0);
 }
 
@@ -230,9 +240,8 @@ bool are_coarse(const std::vector<Observation>& runs, int channel) {
   for (const Observation& seen : runs) {
     for (size_t i = 1; i < seen.blocks(); ++i) {
       if (!(seen.rows_of(i, channel) > 0.0)) continue;
-      const bool is_same =
-          channel < 3 ? seen.attitude[i].coeffs() == seen.attitude[i - 1].coeffs()
-                      : seen.gyro_rad_s[i][channel - 3] == seen.gyro_rad_s[i - 1][channel - 3];
+      const bool is_same = channel < 3 ? seen.attitude[i].coeffs() == seen.attitude[i - 1].coeffs()
+                                       : seen.value_of(i, channel) == seen.value_of(i - 1, channel);
       same += is_same ? 1.0 : 0.0;
       count += 1.0;
     }
@@ -283,12 +292,8 @@ HeavyTails heavy_tails(const std::vector<Prediction>& residuals,
 
 double deviation_level(const std::vector<Prediction>& residuals,
                        const std::vector<Observation>& runs, int channel) {
-  double sum = 0.0, count = 0.0;
-  for (const Deviations& run : of_all(residuals, runs, channel)) {
-    for (const double x : run.size) sum += x * x;
-    count += static_cast<double>(run.count());
-  }
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+  const std::vector<Deviations> all = of_all(residuals, runs, channel);
+  return count_of(all) > 0 ? std::sqrt(mean_square(all)) : 0.0;
 }
 
 void robustify(const HeavyTails& tails, const std::vector<Prediction>& residuals,

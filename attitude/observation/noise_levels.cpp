@@ -25,13 +25,8 @@ std::vector<ReadingAt> readings_of(const Observation& seen, int channel) {
   for (size_t i = 0; i < seen.blocks(); ++i) {
     const double rows = seen.rows_of(i, channel);
     if (!(rows > 0.0)) continue;
-    if (channel >= vector_channels) {
-      const auto scalar = static_cast<size_t>(channel - vector_channels);
-      all.push_back({seen.time_s[i], seen.scalar[scalar].value[i]});
-      continue;
-    }
     if (channel >= 3) {
-      all.push_back({seen.time_s[i], seen.gyro_rad_s[i][channel - 3]});
+      all.push_back({seen.time_s[i], seen.value_of(i, channel)});
       continue;
     }
     if (before < seen.blocks()) {
@@ -418,9 +413,7 @@ NoiseLevels noise_from_spread(const std::vector<Observation>& runs, const NoiseL
     for (const Observation& seen : runs) {
       for (size_t i = 0; i < seen.blocks(); ++i) {
         if (!(seen.rows_of(i, channel) > 0.0)) continue;
-        const double x = channel < vector_channels
-                             ? seen.gyro_rad_s[i][channel - 3]
-                             : seen.scalar[static_cast<size_t>(channel - vector_channels)].value[i];
+        const double x = seen.value_of(i, channel);
         sum += x;
         square += x * x;
         count += 1.0;

@@ -93,25 +93,22 @@ class NoiseSearch {
     }
     std::array<AngleNoise, 3> as_found;
     for (size_t k = 0; k < 3; ++k) as_found[k] = axes_[k].axis;
-    double best_value = now - limits_.min_colour_gain;
-    bool found = false;
-    Minimum best;
+    const double wanted = now - limits_.min_colour_gain;
+    Minimum best{{}, wanted};
     const std::array<AngleNoise, 3>* beside = nullptr;
     const auto try_beside = [&](const std::array<AngleNoise, 3>& cameras) {
       const Minimum next = max_likelihood_gyro(cameras);
-      if (!(next.value < best_value)) return;
-      best_value = next.value;
+      if (!(next.value < best.value)) return;
       best = next;
       beside = &cameras;
-      found = true;
     };
     try_beside(as_found);
     if (any_colour()) try_beside(camera_alone);
-    if (!found) return;
-    const Minimum max_likelihood_tail = at_stated_level(with_white_part(best, *beside), *beside);
+    if (beside == nullptr) return;
+    best = at_stated_level(with_white_part(best, *beside), *beside);
     // A lower level with a correlated part may fit better than the stated level with one.
-    if (!(max_likelihood_tail.value < now - limits_.min_colour_gain)) return;
-    use_gyro(max_likelihood_tail);
+    if (!(best.value < wanted)) return;
+    use_gyro(best);
     find_cameras();
   }
 
@@ -188,20 +185,19 @@ class NoiseSearch {
     return simplex_minimum(of, start.at, Eigen::Vector3d(0.2, 0.4, 2.0), 0.3, 120);
   }
 
-  void use_gyro(const Minimum& max_likelihood_tail) {
-    const double log_sigma = gyro_log_sigma;
-    const double factor = std::exp(max_likelihood_tail.at[0]);
-    const bool off = is_off(max_likelihood_tail.at[0], log_sigma, limits_);
+  void use_gyro(const Minimum& best) {
+    const double factor = std::exp(best.at[0]);
+    const bool off = is_off(best.at[0], gyro_log_sigma, limits_);
     gyro_.gyro_rad_s = (off ? factor : 1.0) * stated_.gyro_rad_s;
-    gyro_.gyro_coloured = coloured_fraction(max_likelihood_tail.at);
-    gyro_.gyro_time_s = std::exp(max_likelihood_tail.at[1]);
+    gyro_.gyro_coloured = coloured_fraction(best.at);
+    gyro_.gyro_time_s = std::exp(best.at[1]);
     for (int k = 0; k < 3; ++k) {
       FoundNoise& found = result_.channel[3 + static_cast<size_t>(k)];
       found.level_found = off;
-      found.level_sigma = log_sigma;
+      found.level_sigma = gyro_log_sigma;
       found.colour_found = true;
       found.noise = {gyro_.gyro_rad_s[k], gyro_.gyro_coloured, gyro_.gyro_time_s};
-      found.time_sigma_s = log_sigma * gyro_.gyro_time_s;
+      found.time_sigma_s = gyro_log_sigma * gyro_.gyro_time_s;
     }
   }
 

@@ -58,8 +58,10 @@ NoiseLevels noise_levels(const Sensors& sensors) {
   if (states_camera_noise(sensors)) noise.camera_rad = sensors.camera->noise_rad;
   if (states_gyro_noise(sensors)) noise.gyro_rad_s = Vec3::Constant(sensors.gyro->noise_rad_s);
   for (int s = 0; s < scalar_count; ++s) {
+    constexpr double usual_force_m_s2 = 0.01, usual_field_T = 1e-7, usual_m = 1e-3,
+                     usual_m_s = 1e-2;
     double& level = noise.scalar[static_cast<size_t>(s)].level;
-    constexpr double usual_force_m_s2 = 0.01, usual_field_T = 1e-7;
+    const bool is_stated = states_noise(sensors, vector_channels + s);
     switch (channel_traits(vector_channels + s).measures) {
       case Measures::angle:  // as accurate as the camera about the vertical
         level = noise.camera_rad[2];
@@ -68,22 +70,16 @@ NoiseLevels noise_levels(const Sensors& sensors) {
         level = noise.gyro_rad_s[2];
         break;
       case Measures::force:
-        level = states_noise(sensors, vector_channels + s) ? sensors.accelerometer->noise_m_s2
-                                                           : usual_force_m_s2;
+        level = is_stated ? sensors.accelerometer->noise_m_s2 : usual_force_m_s2;
         break;
       case Measures::length:
-      case Measures::speed: {
-        constexpr double usual_m = 1e-3, usual_m_s = 1e-2;
-        const bool is_length = channel_traits(vector_channels + s).measures == Measures::length;
-        level = is_length ? usual_m : usual_m_s;
-        if (states_noise(sensors, vector_channels + s)) {
-          level = is_length ? sensors.position->noise_m : sensors.position->noise_m_s;
-        }
+        level = is_stated ? sensors.position->noise_m : usual_m;
         break;
-      }
+      case Measures::speed:
+        level = is_stated ? sensors.position->noise_m_s : usual_m_s;
+        break;
       case Measures::field:
-        level = states_noise(sensors, vector_channels + s) ? sensors.magnetometer->noise_T
-                                                           : usual_field_T;
+        level = is_stated ? sensors.magnetometer->noise_T : usual_field_T;
         break;
     }
   }
@@ -146,13 +142,16 @@ bool Observation::measures_attitude(const Platform& platform) const {
 }
 
 size_t Observation::readings(size_t first, size_t last) const {
+  const bool has_place = has(Scalar::position_x) || has(Scalar::position_y);
   size_t count = 0;
   for (size_t i = first; i < last; ++i) {
-    const bool has_place = has(Scalar::position_x) || has(Scalar::position_y);
-    bool read = has_some_attitude() && !has_place ? attitude_rows[i] > 0.0
-                                                  : (gyro_rows[i].array() > 0.0).any();
-    if (!has_some_attitude() || has_place) {
-      for (const ScalarReadings& s : scalar) read = read || (!s.rows.empty() && s.rows[i] > 0.0);
+    bool read = false;
+    if (has_some_attitude() && !has_place) {
+      read = attitude_rows[i] > 0.0;
+    } else {
+      for (int channel = 3; channel < channel_count; ++channel) {
+        read = read || rows_of(i, channel) > 0.0;
+      }
     }
     count += read ? 1 : 0;
   }

@@ -109,6 +109,12 @@ struct Observation {
     if (channel >= 3) return gyro_rows[block][channel - 3];
     return sees_axis[static_cast<size_t>(channel)] ? attitude_rows[block] : 0.0;
   }
+  // The mean of the readings of a rate or scalar (channel 3 or above) in a block.
+  double value_of(size_t block, int channel) const {
+    return channel < vector_channels
+               ? gyro_rad_s[block][channel - 3]
+               : scalar[static_cast<size_t>(channel - vector_channels)].value[block];
+  }
   bool sees_attitude() const { return sees_axis[0] && sees_axis[1] && sees_axis[2]; }
   bool has_some_attitude() const { return sees_axis[0] || sees_axis[1] || sees_axis[2]; }
   bool has(Scalar s) const { return !scalar[static_cast<size_t>(s)].rows.empty(); }

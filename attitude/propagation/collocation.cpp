@@ -73,26 +73,22 @@ void CollocationStep::place_stages() {
   }
 }
 
-CollocationStep::Outcome CollocationStep::attempt(double h_s, const ZeroOrderHold& held,
-                                                  double settled) {
-  const double size = begin_attempt(h_s, held);
-  is_stiff_ = false;
+// Repeats `improve` until the increments settle. It computes better increments from the rates at
+// the stages and calls its argument with the change of each, in units of the scales.
+template <class Improve>
+CollocationStep::Outcome CollocationStep::iterate(const ZeroOrderHold& held, int most_iterations,
+                                                  Settling settling, const Improve& improve) {
   const Lanes times_s = stage_times_s();
-  const Lanes weighted_h_s = h_s * Lanes(gauss::weights);
   Outcome outcome;
-  Settling settling(settled, 1e-14 * size);
-  for (int iteration = 1; iteration <= max_iterations; ++iteration) {
+  while (outcome.iterations < most_iterations) {
+    ++outcome.iterations;
     place_stages();
     dynamics_.rates(times_s, held, stages_.data(), rates_.data());
     Lanes largest_change = 0.0, finite = 0.0;
-    for (size_t c = 0; c < y_.size(); ++c) {
-      const Lanes increment = weighted_h_s * rates_[c];
-      const Lanes moved = inverse_scales_[c] * (increment - increments_[c]);
+    improve([&](const Lanes& moved) {
       largest_change = larger_magnitude(largest_change, moved);
       finite += moved;
-      increments_[c] = increment;
-    }
-    outcome.iterations = iteration;
+    });
     const double change = std::isfinite(sum(finite)) ? largest(largest_change) : sum(finite);
     const Settling::Verdict verdict = settling.judge(change);
     if (verdict == Settling::Verdict::failed) return outcome;
@@ -106,42 +102,40 @@ CollocationStep::Outcome CollocationStep::attempt(double h_s, const ZeroOrderHol
   return outcome;
 }
 
+CollocationStep::Outcome CollocationStep::attempt(double h_s, const ZeroOrderHold& held,
+                                                  double settled) {
+  const double size = begin_attempt(h_s, held);
+  is_stiff_ = false;
+  const Lanes weighted_h_s = h_s * Lanes(gauss::weights);
+  return iterate(held, max_iterations, Settling(settled, 1e-14 * size), [&](const auto& note) {
+    for (size_t c = 0; c < y_.size(); ++c) {
+      const Lanes increment = weighted_h_s * rates_[c];
+      note(inverse_scales_[c] * (increment - increments_[c]));
+      increments_[c] = increment;
+    }
+  });
+}
+
 CollocationStep::Outcome CollocationStep::attempt_stiff(double h_s, const ZeroOrderHold& held,
                                                         double settled) {
   const double size = begin_attempt(h_s, held);
   is_stiff_ = true;
   if (state_blocks_.empty()) state_blocks_ = state_blocks(dynamics_);
-  const Lanes times_s = stage_times_s();
   const Lanes weighted_h_s = h_s * Lanes(gauss::weights);
   std::vector<Lanes> move(y_.size());
-  Outcome outcome;
-  Settling settling(settled, 1e-14 * size, 3);
-  for (int iteration = 1; iteration <= max_newton_iterations; ++iteration) {
-    place_stages();
-    dynamics_.rates(times_s, held, stages_.data(), rates_.data());
+  const Settling settling(settled, 1e-14 * size, 3);
+  const Outcome outcome = iterate(held, max_newton_iterations, settling, [&](const auto& note) {
     for (size_t c = 0; c < y_.size(); ++c) move[c] = weighted_h_s * rates_[c] - increments_[c];
-    const std::vector<RateDerivative>& jacobian =
-        rate_derivatives(dynamics_, state_blocks_, times_s, held, stages_.data(), room_);
-    StageSystem(y_.size(), h_s, jacobian).solve(move, 1);
-    Lanes largest_change = 0.0, finite = 0.0;
+    rate_derivatives(dynamics_, state_blocks_, stage_times_s(), held, stages_.data(), room_);
+    StageSystem(y_.size(), h_s, room_.jacobian).solve(move, 1);
     for (size_t c = 0; c < y_.size(); ++c) {
-      const Lanes moved = inverse_scales_[c] * move[c];
-      largest_change = larger_magnitude(largest_change, moved);
-      finite += moved;
+      note(inverse_scales_[c] * move[c]);
       increments_[c] += move[c];
     }
-    outcome.iterations = iteration;
-    const double change = std::isfinite(sum(finite)) ? largest(largest_change) : sum(finite);
-    const Settling::Verdict verdict = settling.judge(change);
-    if (verdict == Settling::Verdict::failed) return outcome;
-    if (verdict == Settling::Verdict::settled) {
-      place_stages();
-      stiffness_ = h_s * stiffness_1_s(jacobian, dynamics_.scales());
-      outcome.converged = true;
-      outcome.error = estimate_error();
-      if (is_abrupt_) outcome.error = std::max(outcome.error, estimate_error_of_ends(held));
-      return outcome;
-    }
+  });
+  if (outcome.converged) {
+    place_stages();
+    stiffness_ = h_s * stiffness_1_s(room_.jacobian, dynamics_.scales());
   }
   return outcome;
 }

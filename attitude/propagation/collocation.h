@@ -67,6 +67,9 @@ class CollocationStep {
   void keep(Snapshot& snapshot);
 
  private:
+  template <class Improve>
+  Outcome iterate(const ZeroOrderHold& held, int most_iterations, Settling settling,
+                  const Improve& improve);
   double estimate_error() const;
   double estimate_error_of_ends(const ZeroOrderHold& held) const;
   void predict(double h_s, const ZeroOrderHold& held);

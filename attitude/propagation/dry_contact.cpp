@@ -20,9 +20,7 @@ std::vector<double> DryContact::rates(double time_s, const ZeroOrderHold& held,
   const std::vector<Lanes> lanes(y.begin(), y.end());
   std::vector<Lanes> rates(y.size());
   dynamics_.rates(std::nextafter(time_s, -1e300), held, lanes.data(), rates.data());
-  std::vector<double> first;
-  for (const Lanes& rate : rates) first.push_back(rate[0]);
-  return first;
+  return lane_of(rates, 0);
 }
 
 DryContact::Accelerations DryContact::accelerations(const Lanes& time_s, ZeroOrderHold held,

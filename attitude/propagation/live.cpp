@@ -5,6 +5,20 @@
 
 namespace photorque {
 
+Truth truth_at(const PlatformState& state, const Quat& seen, const Dynamics::Instants& now,
+               int lane) {
+  return {.time_s = state.time_s,
+          .lab_from_body_seen = seen,
+          .rate_body_rad_s = state.rate_body_rad_s,
+          .yaw_rad = yaw_rad(state),
+          .gyro_rad_s = lane_of(now.gyro_rad_s, lane),
+          .camera_error_rad = lane_of(now.camera_error_rad, lane),
+          .command_body_N_m = lane_of(now.command_body_N_m, lane),
+          .command_lab_N = lane_of(now.command_lab_N, lane),
+          .battery_current_A = now.battery_current_A[lane],
+          .array_power_W = now.array_power_W[lane]};
+}
+
 Quat attitude_before(const PlatformState& state, double before_s) {
   return state.lab_from_body * turn_by(-before_s * state.rate_body_rad_s);
 }
@@ -27,12 +41,10 @@ double LiveInstruments::tick_s(size_t index) const {
 void LiveInstruments::follow(const Propagator& motion) {
   if (!(delay_s_ > 0.0)) return;
   std::vector<Lanes> y(static_cast<size_t>(dynamics_.size()));
-  std::vector<double> one(y.size());
   for (; tick_s(next_look_) - delay_s_ < motion.step_end_s(); ++next_look_) {
     const double look_s = tick_s(next_look_) - delay_s_;
     motion.dense(look_s, y.data());
-    for (size_t c = 0; c < y.size(); ++c) one[c] = y[c][0];
-    on_the_way_.push_back(to_state(look_s, one).lab_from_body);
+    on_the_way_.push_back(to_state(look_s, lane_of(y, 0)).lab_from_body);
   }
 }
 
@@ -56,17 +68,12 @@ LiveRow LiveInstruments::read(double time_s, std::span<const double> y, const Ze
   row.time_s = time_s;
   row.truth = to_state(time_s, y);
   row.command_body_N_m = lane_of(now.command_body_N_m, 0);
-  row.battery_current_A = power ? power->battery_current_A : now.battery_current_A[0];
-  row.array_power_W = power ? power->array_power_W : now.array_power_W[0];
-  recorder_.add({.time_s = time_s,
-                 .lab_from_body_seen = seen(row.truth),
-                 .rate_body_rad_s = row.truth.rate_body_rad_s,
-                 .yaw_rad = yaw_rad(row.truth),
-                 .gyro_rad_s = lane_of(now.gyro_rad_s, 0),
-                 .camera_error_rad = lane_of(now.camera_error_rad, 0),
-                 .command_body_N_m = row.command_body_N_m,
-                 .battery_current_A = row.battery_current_A,
-                 .array_power_W = row.array_power_W});
+  Truth truth = truth_at(row.truth, seen(row.truth), now, 0);
+  if (power) {
+    truth.battery_current_A = power->battery_current_A;
+    truth.array_power_W = power->array_power_W;
+  }
+  recorder_.add(truth);
   const auto last = [&](const char* name) { return recorder_.last(name); };
   row.lab_from_body_seen = {last("q_w"), last("q_x"), last("q_y"), last("q_z")};
   row.gyro_rad_s = {last("gyro_x_rad_s"), last("gyro_y_rad_s"), last("gyro_z_rad_s")};

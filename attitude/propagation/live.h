@@ -33,6 +33,11 @@ struct LiveRow {
 // Returns the command until the next tick. It may take any time: the run waits for it.
 using LiveCommander = std::function<ZeroOrderHold(const LiveRow& row)>;
 
+// The truth of a row at `state`, with the values in lane `lane` of `now`, for instruments of which
+// the camera sees the attitude `seen`.
+Truth truth_at(const PlatformState& state, const Quat& seen, const Dynamics::Instants& now,
+               int lane);
+
 // Attitude `before_s` seconds before `state`, if the body rate is constant.
 Quat attitude_before(const PlatformState& state, double before_s);
 

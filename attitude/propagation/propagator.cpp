@@ -4,12 +4,12 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "attitude/propagation/sampling.h"
 #include "core/errors.h"
 #include "core/numerics/table.h"
 #include "core/snapshot.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -20,12 +20,6 @@ double with_few_bits(double h) {
   int exponent = 0;
   const double mantissa = std::frexp(h, &exponent);
   return std::ldexp(std::floor(std::ldexp(mantissa, 12)), exponent - 12);
-}
-
-std::string shown(double x) {
-  std::ostringstream out;
-  out << x;
-  return out.str();
 }
 
 std::vector<double> checked_start(const Dynamics& dynamics, const PlatformState& initial) {
@@ -69,14 +63,8 @@ namespace {
 
 // Kinds whose torque is not finite in this state, as text in brackets; empty if all are finite.
 std::string infinite_torques(const Dynamics& dynamics, double time_s, std::span<const double> y) {
-  PlatformState state;
-  state.time_s = time_s;
-  state.lab_from_body = Quat(y[0], y[1], y[2], y[3]);
-  state.rate_body_rad_s = {y[component::rate], y[component::rate + 1], y[component::rate + 2]};
-  state.charge_drawn_C = y[component::charge];
-  state.extra.assign(y.begin() + component::extra, y.end());
   const AttitudeModel& model = dynamics.model();
-  const std::vector<Vec3> torques = disturbance_torques_body_N_m(model, state);
+  const std::vector<Vec3> torques = disturbance_torques_body_N_m(model, to_state(time_s, y));
   std::string names;
   for (size_t d = 0; d < torques.size(); ++d) {
     if (torques[d].allFinite()) continue;
@@ -116,7 +104,7 @@ void Propagator::collect_jumps(double from_s) {
   }
   for (size_t d = 0; d < model.disturbances.size(); ++d) {
     const Disturbance& disturbance = model.disturbances[d];
-    for (const Switch& s : disturbance.law->switches(disturbance.parameters, from_s, end_s_)) {
+    for (const Switch& s : disturbance.law->switches(disturbance.parameters)) {
       if (!(s.time_s > from_s && s.time_s < end_s_)) continue;
       int variable = -1;
       if (sensitivity_ && s.parameter >= 0) {
@@ -181,8 +169,10 @@ void Propagator::check_pace() const {
   const double pace_s = (step_.start_s() - begin_s_) / static_cast<double>(statistics_.steps);
   const double left_s = end_s_ - step_.start_s();
   if (pace_s * static_cast<double>(options_.max_steps - statistics_.steps) < left_s) {
-    throw NumericalError("steps of " + shown(pace_s) + " s on average will not reach " +
-                         shown(end_s_) + " s: the motion is too fast for its duration");
+    throw NumericalError(
+        printed("steps of %g s on average will not reach %g s: the motion is too fast for its "
+                "duration",
+                pace_s, end_s_));
   }
 }
 
@@ -205,9 +195,9 @@ void Propagator::take_step() {
     const bool cut = slip_ends_ || h_s >= left_s;
     h_s = cut ? left_s : with_few_bits(h_s > 0.5 * left_s ? 0.5 * left_s : h_s);
     if (++statistics_.steps > options_.max_steps || start_s + h_s <= start_s) {
-      throw NumericalError("the step length of the propagator fell to " + shown(h_s) +
-                           " s at t = " + shown(start_s) + " s" +
-                           infinite_torques(dynamics_, start_s, step_.start()));
+      throw NumericalError(
+          printed("the step length of the propagator fell to %g s at t = %g s", h_s, start_s) +
+          infinite_torques(dynamics_, start_s, step_.start()));
     }
     CollocationStep::Outcome outcome{};
     try {
@@ -513,9 +503,9 @@ Trajectory propagate(const Dynamics& dynamics, const PlatformState& initial,
   trajectory.variables = variables.size();
   trajectory.states.reserve(times_s.size());
   const auto sink = [&](const Samples& samples) {
-    std::vector<double> y(n), change(n);
+    std::vector<double> change(n);
     for (int i = 0; i < samples.count; ++i) {
-      for (size_t c = 0; c < n; ++c) y[c] = samples.y[c][i];
+      const std::vector<double> y = lane_of(samples.y, i);
       trajectory.states.push_back(to_state(samples.time_s[i], y));
       if (variables.empty()) continue;
       const size_t first = trajectory.derivatives.size();

@@ -28,7 +28,8 @@ std::vector<EventFunction> events_of(const Dynamics& dynamics, bool has_power_sy
   return events;
 }
 
-struct Seen {
+// The times of the rows of a recording.
+struct RowTimes {
   const PropagationRun& run;
   double time_s(size_t row) const {
     return run.initial.time_s + static_cast<double>(row) / run.output_rate_Hz;
@@ -37,12 +38,6 @@ struct Seen {
     return static_cast<size_t>(std::floor(run.duration_s * run.output_rate_Hz + 1e-6)) + 1;
   }
 };
-
-double camera_delay_s(const Dynamics& dynamics, const PlatformState& state) {
-  std::vector<Lanes> y;
-  for (const double x : to_vector(state)) y.emplace_back(x);
-  return dynamics.at(state.time_s, {}, y.data()).camera_delay_s[0];
-}
 
 // Reads the instruments at a tick and calls the commander of the run.
 Propagator::Commander commander_at_ticks(const PropagationRun& run, const Propagator& propagator,
@@ -64,13 +59,13 @@ size_t thinning(size_t rows, size_t history_rows) {
 }  // namespace
 
 std::vector<RecordedRun::Look> RecordedRun::looks(const PropagationRun& run, double delay_s) {
-  const Seen seen{run};
+  const RowTimes rows{run};
   std::vector<Look> all;
   size_t next_seen = 0;
-  for (size_t row = 0; row < seen.rows(); ++row) {
-    const double time_s = seen.time_s(row);
-    for (; delay_s > 0.0 && next_seen < seen.rows(); ++next_seen) {
-      const double wanted_s = seen.time_s(next_seen) - delay_s;
+  for (size_t row = 0; row < rows.rows(); ++row) {
+    const double time_s = rows.time_s(row);
+    for (; delay_s > 0.0 && next_seen < rows.rows(); ++next_seen) {
+      const double wanted_s = rows.time_s(next_seen) - delay_s;
       const double seen_s = std::max(run.initial.time_s, wanted_s);
       if (seen_s > time_s) break;
       all.push_back({seen_s, false, seen_s - wanted_s});
@@ -86,9 +81,9 @@ RecordedRun::RecordedRun(const PropagationRun& run, std::function<void(double)> 
       progress_(std::move(progress)),
       dynamics_(run.model),
       given_(run.model.schedule),
-      delay_s_(camera_delay_s(dynamics_, run.initial)),
+      delay_s_(dynamics_.at(run.initial).camera_delay_s[0]),
       times_(looks(run, delay_s_)),
-      rows_(Seen{run}.rows()),
+      rows_(RowTimes{run}.rows()),
       thinning_(thinning(rows_, run.history_rows)),
       recorder_(run.sensors, run.seed),
       history_(dynamics_),
@@ -144,9 +139,8 @@ void RecordedRun::record(const Samples& samples) {
     now.battery_current_A.set(i, power.battery_current_A);
     now.array_power_W.set(i, power.array_power_W);
   }
-  std::vector<double> y(samples.y.size());
   for (int i = 0; i < samples.count; ++i) {
-    for (size_t c = 0; c < y.size(); ++c) y[c] = samples.y[c][i];
+    const std::vector<double> y = lane_of(samples.y, i);
     PlatformState state = to_state(samples.time_s[i], y);
     if (beside_ != nullptr) state.charge_drawn_C = beside_->at(state.time_s).charge_drawn_C;
     record(times_[samples.first + static_cast<size_t>(i)], y, state, now, i);
@@ -165,24 +159,14 @@ void RecordedRun::record(const Look& look, const std::vector<double>& y, const P
     seen = on_the_way_.front();
     on_the_way_.pop_front();
   }
-  Vec3 torque_body_N_m = lane_of(now.command_body_N_m, lane);
-  Vec3 force_lab_N = lane_of(now.command_lab_N, lane);
+  Truth truth = truth_at(state, seen, now, lane);
+  truth.place_m_m_s = place_of(dynamics_, y);
   if (dynamics_.model().schedule.command_delay_s > 0.0) {
     const ZeroOrderHold given = given_.at(state.time_s);
-    torque_body_N_m = given.command_body_N_m;
-    force_lab_N = given.force_lab_N + state.lab_from_body * given.force_body_N;
+    truth.command_body_N_m = given.command_body_N_m;
+    truth.command_lab_N = given.force_lab_N + state.lab_from_body * given.force_body_N;
   }
-  recorder_.add({.time_s = state.time_s,
-                 .lab_from_body_seen = seen,
-                 .rate_body_rad_s = state.rate_body_rad_s,
-                 .yaw_rad = yaw_rad(state),
-                 .place_m_m_s = place_of(dynamics_, y),
-                 .gyro_rad_s = lane_of(now.gyro_rad_s, lane),
-                 .camera_error_rad = lane_of(now.camera_error_rad, lane),
-                 .command_body_N_m = torque_body_N_m,
-                 .command_lab_N = force_lab_N,
-                 .battery_current_A = now.battery_current_A[lane],
-                 .array_power_W = now.array_power_W[lane]});
+  recorder_.add(truth);
   const bool is_last = states_.size() + 1 == rows_;
   if (states_.size() % thinning_ == 0 || is_last) history_.add(state, now, lane);
   states_.push_back(state);

@@ -96,12 +96,16 @@ Settings of_propagate(const Settings& root) {
   return own_table(root, std::string(propagate_key::propagate.name), false);
 }
 
-// Calendar time of t = 0 if `epoch` or the initial APM states it.
-std::optional<std::string> stated_epoch(const Settings& root) {
-  const Settings settings = of_propagate(root);
-  if (settings.has(propagate_key::epoch)) return settings.get(propagate_key::epoch);
+std::optional<AttitudeParameters> read_initial_apm(const Settings& settings) {
   if (!settings.has(propagate_key::initial_apm)) return std::nullopt;
-  return epoch_text(read_apm(file_of(settings, propagate_key::initial_apm)).epoch);
+  return read_apm(file_of(settings, propagate_key::initial_apm));
+}
+
+// Calendar time of t = 0 if `epoch` or the initial APM states it.
+std::optional<std::string> stated_epoch(const Settings& settings) {
+  if (settings.has(propagate_key::epoch)) return settings.get(propagate_key::epoch);
+  const std::optional<AttitudeParameters> apm = read_initial_apm(settings);
+  return apm ? std::optional(epoch_text(apm->epoch)) : std::nullopt;
 }
 
 // Settings with the [[disturbance]] tables only; other readers check the rest of the file. A
@@ -112,7 +116,7 @@ Settings disturbances_of(const Settings& root) {
     for (SettingsNode& one : *all) {
       auto* keys = std::get_if<SettingsNode::Table>(&one.value);
       if (keys == nullptr || !keys->contains("ephemeris") || keys->contains("epoch")) continue;
-      const std::optional<std::string> epoch = stated_epoch(root);
+      const std::optional<std::string> epoch = stated_epoch(of_propagate(root));
       if (epoch) (*keys)["epoch"] = {*epoch, one.where};
     }
   }
@@ -164,9 +168,13 @@ std::vector<Disturbance> read_own_disturbances(const Settings& root,
   return disturbances;
 }
 
-Vec3 in_plane(const Settings& command, const NumbersKey& key) {
-  if (!command.has(key)) return Vec3::Zero();
-  const std::vector<double> two = command.get(key);
+// Two numbers along x and y; zero if the key is absent.
+Vec3 in_plane(const Settings& settings, const NumbersKey& key) {
+  if (!settings.has(key)) return Vec3::Zero();
+  const std::vector<double> two = settings.get(key);
+  if (two.size() != 2) {
+    throw settings.error(key, std::to_string(two.size()) + " numbers", "two, along x and y");
+  }
   return {two[0], two[1], 0.0};
 }
 
@@ -177,13 +185,7 @@ Schedule read_schedule(const Settings& settings) {
       throw settings.error(propagate_key::command, "[[propagate.command]] beside commands",
                            "one of the two");
     }
-    const std::filesystem::path path = file_of(settings, propagate_key::commands);
-    if (!std::filesystem::is_regular_file(path)) {
-      throw settings.error(propagate_key::commands,
-                           "\"" + settings.get(propagate_key::commands) + "\"",
-                           "a file beside the experiment");
-    }
-    return read_command_file(path);
+    return read_command_file(file_of(settings, propagate_key::commands));
   }
   Schedule schedule;
   std::optional<double> before_s;
@@ -224,11 +226,6 @@ Quat with_initial_yaw(const Settings& settings, const Quat& lean) {
   Mat3 axes;
   axes << x, up.cross(x), up;
   return Quat(axes);
-}
-
-std::optional<AttitudeParameters> read_initial_apm(const Settings& settings) {
-  if (!settings.has(propagate_key::initial_apm)) return std::nullopt;
-  return read_apm(file_of(settings, propagate_key::initial_apm));
 }
 
 Quat read_initial_attitude(const Settings& settings, const std::optional<AttitudeParameters>& apm) {
@@ -403,9 +400,8 @@ PropagationRun read_propagation(const Settings& root) {
   }
   run.options.tick_rate_Hz = settings.get(propagate_key::tick_rate);
   run.model.schedule = read_schedule(settings);
-  run.epoch = settings.has(propagate_key::epoch)
-                  ? settings.get(propagate_key::epoch)
-                  : stated_epoch(root).value_or("2000-01-01T00:00:00");
+  const std::optional<std::string> epoch = stated_epoch(settings);
+  run.epoch = epoch.value_or("2000-01-01T00:00:00");
   if (!parse_epoch(run.epoch)) {
     throw settings.error(propagate_key::epoch, "\"" + run.epoch + "\"",
                          "a time as 2000-01-01T12:00:00");
@@ -443,7 +439,7 @@ PropagationRun read_propagation(const Settings& root) {
         "at most the " + std::to_string(*capacity_C / 3600.0) + " of platform.battery_capacity_Ah");
   }
   run.initial.time_s = settings.get(propagate_key::initial_time);
-  take_ephemeris(root, stated_epoch(root).has_value(), run);
+  take_ephemeris(root, epoch.has_value(), run);
   // The year of a calendar time in attitude.aem has four digits.
   const double left_s = parse_epoch("9999-12-31T23:59:59")->seconds_since(*parse_epoch(run.epoch));
   if (run.initial.time_s + run.duration_s > left_s) {
@@ -455,15 +451,12 @@ PropagationRun read_propagation(const Settings& root) {
 
 void read_initial_place(const Settings& settings, const AttitudeModel& model,
                         PlatformState& initial) {
-  const int place = Dynamics(model).first_of_translation();
-  if (place < 0) return;
-  auto to = initial.extra.begin() + (place - component::extra);
+  const int first = Dynamics(model).first_of_translation();
+  if (first < 0) return;
+  auto to = initial.extra.begin() + (first - component::extra);
   for (const NumbersKey& key : {propagate_key::initial_position, propagate_key::initial_velocity}) {
-    const std::vector<double> two = settings.get_or(key, std::vector<double>{0.0, 0.0});
-    if (two.size() != 2) {
-      throw settings.error(key, std::to_string(two.size()) + " numbers", "two, along lab x and y");
-    }
-    to = std::copy(two.begin(), two.end(), to);
+    const Vec3 place = in_plane(settings, key);
+    to = std::copy(place.begin(), place.begin() + 2, to);
   }
 }
 

@@ -90,10 +90,9 @@ void Sampler::follow() {
   take(false);
 }
 
-size_t Sampler::finish() {
+void Sampler::finish() {
   take(true);
   flush();
-  return next_;
 }
 
 void Sampler::keep(Snapshot& snapshot) {
@@ -102,15 +101,11 @@ void Sampler::keep(Snapshot& snapshot) {
   samples_.keep(snapshot, y_.size(), count_);
 }
 
-size_t sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
-              const std::function<void(const Samples&)>& sink,
-              const std::function<void()>& after_step) {
+void sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
+            const std::function<void(const Samples&)>& sink) {
   Sampler sampler(propagator, count, time_s, sink);
-  while (propagator.advance()) {
-    if (after_step) after_step();
-    sampler.follow();
-  }
-  return sampler.finish();
+  while (propagator.advance()) sampler.follow();
+  sampler.finish();
 }
 
 }  // namespace photorque

@@ -34,9 +34,8 @@ class Sampler {
 
   // Call after every step: takes the samples within the step, except at its end.
   void follow();
-  // Call after the run has ended: takes the samples at its end too. Returns the number of times
-  // reached.
-  size_t finish();
+  // Call after the run has ended: takes the samples at its end too.
+  void finish();
 
   // Stores or restores a sampler without derivatives, after a step.
   void keep(Snapshot& snapshot);
@@ -55,10 +54,8 @@ class Sampler {
   size_t next_ = 0;
 };
 
-// Samples the whole run. `after_step` is called after every step, before `sink` receives its
-// states. Returns the number of times reached before the run ended.
-size_t sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
-              const std::function<void(const Samples&)>& sink,
-              const std::function<void()>& after_step = {});
+// Samples the whole run.
+void sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
+            const std::function<void(const Samples&)>& sink);
 
 }  // namespace photorque

@@ -13,39 +13,6 @@
 namespace photorque {
 namespace {
 
-// Columns before the extra states.
-enum Column : size_t {
-  time,
-  q_w,
-  q_x,
-  q_y,
-  q_z,
-  tilt,
-  heading,
-  yaw,
-  rate_x,
-  rate_y,
-  rate_z,
-  charge,
-  current,
-  power,
-  fixed
-};
-constexpr const char* fixed_names[fixed] = {"t_s",
-                                            "q_w",
-                                            "q_x",
-                                            "q_y",
-                                            "q_z",
-                                            "tilt_deg",
-                                            "heading_deg",
-                                            "yaw_deg",
-                                            "rate_x_rad_s",
-                                            "rate_y_rad_s",
-                                            "rate_z_rad_s",
-                                            "charge_drawn_Ah",
-                                            "battery_current_A",
-                                            "array_power_W"};
-
 // At most about 1600 points, the number of pixel columns of a plot.
 Plot::Curve curve(const std::string& label, const std::vector<double>& x,
                   const std::vector<double>& y) {
@@ -164,14 +131,13 @@ std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
   return curves;
 }
 
-Quantity exact(const std::string& name, double value) {
-  return {name, {value, 0.0}};
-}
-
 }  // namespace
 
-TimeHistory::TimeHistory(const Dynamics& dynamics) {
-  for (const char* name : fixed_names) columns_.push_back({name});
+TimeHistory::TimeHistory(const Dynamics& dynamics)
+    : table_(Table::of("time_history", "Attitude, rates, charge and torques",
+                       {"t_s", "q_w", "q_x", "q_y", "q_z", "tilt_deg", "heading_deg", "yaw_deg",
+                        "rate_x_rad_s", "rate_y_rad_s", "rate_z_rad_s", "charge_drawn_Ah",
+                        "battery_current_A", "array_power_W"})) {
   const auto& disturbances = dynamics.model().disturbances;
   // The second disturbance of a kind gets the suffix _2, the third _3.
   std::vector<std::string> labels;
@@ -183,23 +149,22 @@ TimeHistory::TimeHistory(const Dynamics& dynamics) {
   }
   for (size_t d = 0; d < disturbances.size(); ++d) {
     for (const ExtraState& state : disturbances[d].states) {
-      columns_.push_back({labels[d] + "_" + state.name});
+      table_.columns.push_back({labels[d] + "_" + state.name});
     }
   }
-  first_torque_ = columns_.size();
   for (size_t d = 0; d < disturbances.size(); ++d) {
     if (disturbances[d].stage == Stage::measurement) continue;
     acting_.push_back(d);
     labels_.push_back(labels[d]);
     for (const char axis : {'x', 'y', 'z'}) {
-      columns_.push_back({"torque_" + labels[d] + "_" + axis + "_N_m"});
+      table_.columns.push_back({"torque_" + labels[d] + "_" + axis + "_N_m"});
     }
   }
 }
 
 void TimeHistory::add(const PlatformState& state, const Dynamics::Instants& now, int lane) {
   size_t column = 0;
-  const auto put = [&](double value) { columns_[column++].values.push_back(value); };
+  const auto put = [&](double value) { table_.columns[column++].values.push_back(value); };
   const Quat& q = state.lab_from_body;
   put(state.time_s);
   for (const double x : {q.w(), q.x(), q.y(), q.z()}) put(x);
@@ -217,10 +182,11 @@ void TimeHistory::add(const PlatformState& state, const Dynamics::Instants& now,
 }
 
 void TimeHistory::keep(Snapshot& snapshot) {
-  snapshot.expect(columns_.size());
-  snapshot(columns_[time].values);
-  for (Table::Column& column : columns_) {
-    column.values.resize(columns_[time].values.size());
+  std::vector<double>& times_s = table_.columns.front().values;
+  snapshot.expect(table_.columns.size());
+  snapshot(times_s);
+  for (Table::Column& column : table_.columns) {
+    column.values.resize(times_s.size());
     snapshot.fixed(column.values);
   }
 }
@@ -229,11 +195,11 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
                              const std::vector<Event>& events,
                              const Propagator::Statistics& statistics) const {
   Product product;
-  const auto values = [&](size_t column) -> const std::vector<double>& {
-    return columns_[column].values;
+  const auto values = [&](const std::string& column) -> const std::vector<double>& {
+    return table_.column(column).values;
   };
-  const std::vector<double>& t = values(time);
-  product.tables.push_back({"time_history", "Attitude, rates, charge and torques", columns_});
+  const std::vector<double>& t = values("t_s");
+  product.tables.push_back(table_);
   Table happened = Table::of("events", "What happened", {"event", "t_s"});
   for (const Event& event : events) {
     happened.row().set("event", event.name).set("t_s", event.time_s);
@@ -252,69 +218,72 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
   };
   // Oscillating curves of long runs would hide each other, so every axis has a separate panel.
   const auto add_vector_plot = [&](const std::string& name, const std::string& title,
-                                   const std::string& unit, size_t x) {
-    add_plot(name, title, "x [" + unit + "]", {curve("", t, values(x))});
-    product.plots.back().below = {{"y [" + unit + "]", {curve("", t, values(x + 1))}, false},
-                                  {"z [" + unit + "]", {curve("", t, values(x + 2))}, false}};
+                                   const std::string& unit, const auto& along) {
+    add_plot(name, title, "x [" + unit + "]", {curve("", t, along('x'))});
+    product.plots.back().below = {{"y [" + unit + "]", {curve("", t, along('y'))}, false},
+                                  {"z [" + unit + "]", {curve("", t, along('z'))}, false}};
   };
-  add_plot("tilt", "Tilt", "tilt [deg]", {curve("", t, values(tilt))});
-  add_plot("yaw", "Yaw", "yaw [deg]", {curve("", t, unwrapped_deg(values(yaw)))});
-  add_vector_plot("rates", "Body rates", "rad/s", rate_x);
-  if (any_nonzero(values(charge))) {
-    add_plot("charge", "Charge missing from the battery", "charge [Ah]",
-             {curve("", t, values(charge))});
+  const auto rate_along = [&](char axis) -> const std::vector<double>& {
+    return values(std::string("rate_") + axis + "_rad_s");
+  };
+  const std::vector<double>&charge_Ah = values("charge_drawn_Ah"),
+        &power_W = values("array_power_W");
+  add_plot("tilt", "Tilt", "tilt [deg]", {curve("", t, values("tilt_deg"))});
+  add_plot("yaw", "Yaw", "yaw [deg]", {curve("", t, unwrapped_deg(values("yaw_deg")))});
+  add_vector_plot("rates", "Body rates", "rad/s", rate_along);
+  if (any_nonzero(charge_Ah)) {
+    add_plot("charge", "Charge missing from the battery", "charge [Ah]", {curve("", t, charge_Ah)});
   }
-  if (any_nonzero(values(power))) {
-    add_plot("array_power", "Power of the solar array", "power [W]", {curve("", t, values(power))});
+  if (any_nonzero(power_W)) {
+    add_plot("array_power", "Power of the solar array", "power [W]", {curve("", t, power_W)});
   }
-  std::vector<size_t> shown;
+  std::vector<std::string> shown;
   std::vector<std::vector<double>> sizes;
   double largest_N_m = 0.0;
-  for (size_t i = 0; i < acting_.size(); ++i) {
-    const size_t x = first_torque_ + 3 * i;
-    std::vector<double> size = magnitudes(values(x), values(x + 1), values(x + 2));
+  for (const std::string& label : labels_) {
+    const auto along = [&](char axis) -> const std::vector<double>& {
+      return values("torque_" + label + "_" + axis + "_N_m");
+    };
+    std::vector<double> size = magnitudes(along('x'), along('y'), along('z'));
     if (!any_nonzero(size)) continue;
     largest_N_m = std::max(largest_N_m, *std::max_element(size.begin(), size.end()));
-    shown.push_back(i);
+    shown.push_back(label);
     sizes.push_back(std::move(size));
-    add_vector_plot("torque_" + labels_[i], "Torque of " + labels_[i] + ", body axes", "N m", x);
+    add_vector_plot("torque_" + label, "Torque of " + label + ", body axes", "N m", along);
   }
   if (!shown.empty()) {
     // A torque below this fraction of the largest one cannot be seen in the motion.
     constexpr double min_fraction = 1e-9;
     std::vector<Plot::Curve> all;
     for (size_t i = 0; i < shown.size(); ++i) {
-      all.push_back(envelope(labels_[shown[i]], t, sizes[i], min_fraction * largest_N_m));
+      all.push_back(envelope(shown[i], t, sizes[i], min_fraction * largest_N_m));
     }
     std::erase_if(all, [](const Plot::Curve& one) {
       return std::none_of(one.y.begin(), one.y.end(), [](double y) { return std::isfinite(y); });
     });
-    std::vector<std::string> names;
-    for (const size_t i : shown) names.push_back(labels_[i]);
     add_plot("torque_fractions", "Fraction of every torque in the sum of their sizes",
-             "fraction [%]", stacked_fractions(t, names, sizes));
+             "fraction [%]", stacked_fractions(t, shown, sizes));
     add_plot("torques", "Size of every torque, largest within each 240th of the run",
              "torque [N m]", std::move(all));
     product.plots.back().y_log = true;
   }
 
-  const std::vector<double>& tilts = values(tilt);
   if (!t.empty()) {
     const Excursion excursion = excursion_of(states);
     product.quantities = {
-        exact("final_time_s", t.back()),
-        exact("final_tilt_deg", tilts.back()),
-        exact("largest_tilt_deg", excursion.largest_tilt_rad / degree_rad),
-        exact("largest_tilt_time_s", excursion.largest_tilt_at_s),
-        exact("yaw_excursion_deg", excursion.yaw_rad / degree_rad),
-        exact("final_heading_deg", values(heading).back()),
-        exact("final_yaw_deg", values(yaw).back()),
-        exact("final_rate_rad_s",
-              std::hypot(values(rate_x).back(), values(rate_y).back(), values(rate_z).back())),
-        exact("final_charge_drawn_Ah", values(charge).back()),
+        {"final_time_s", {t.back()}},
+        {"final_tilt_deg", {values("tilt_deg").back()}},
+        {"largest_tilt_deg", {excursion.largest_tilt_rad / degree_rad}},
+        {"largest_tilt_time_s", {excursion.largest_tilt_at_s}},
+        {"yaw_excursion_deg", {excursion.yaw_rad / degree_rad}},
+        {"final_heading_deg", {values("heading_deg").back()}},
+        {"final_yaw_deg", {values("yaw_deg").back()}},
+        {"final_rate_rad_s",
+         {std::hypot(rate_along('x').back(), rate_along('y').back(), rate_along('z').back())}},
+        {"final_charge_drawn_Ah", {charge_Ah.back()}},
     };
   }
-  product.quantities.push_back(exact("steps", static_cast<double>(statistics.steps)));
+  product.quantities.push_back({"steps", {static_cast<double>(statistics.steps)}});
   return product;
 }
 

@@ -28,8 +28,7 @@ class TimeHistory {
  private:
   std::vector<std::string> labels_;  // of the disturbances that act on the body
   std::vector<size_t> acting_;       // their indices
-  std::vector<Table::Column> columns_;
-  size_t first_torque_ = 0;  // column of the first disturbance's x torque
+  Table table_;
 };
 
 }  // namespace photorque

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "attitude/disturbances/bearing/air_bearing.h"
 #include "attitude/disturbances/mass/battery.h"
@@ -12,6 +11,7 @@
 #include "attitude/recordings/sensors.h"
 #include "core/constants.h"
 #include "core/numerics/root.h"
+#include "core/text/format.h"
 
 namespace photorque {
 
@@ -28,10 +28,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Air room;
 
 std::string number(double x) {
-  std::ostringstream out;
-  out.precision(3);
-  out << x;
-  return out.str();
+  return printed("%.3g", x);
 }
 
 MovingMass moving_mass(const PaperInputs& in) {
@@ -60,11 +57,6 @@ double rate_for_torque_rpm(const std::vector<AirPart>& parts, double wanted_N_m)
     return torque_N_m(parts, rate_rad_s) < wanted_N_m;
   };
   return bisect(0.0, 1e4, too_slow).low / one_rpm_rad_s;
-}
-
-std::vector<AirPart> joined(std::vector<AirPart> a, const std::vector<AirPart>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
 }
 
 // Decimal year at which the dipole of IGRF was as strong as the paper's.
@@ -122,7 +114,7 @@ void add_bearing(std::vector<PaperFigure>& all, const PaperInputs& in) {
 
 void add_air(std::vector<PaperFigure>& all, const PaperInputs& in) {
   const PaperAirParts parts = paper_air_parts(in);
-  const std::vector<AirPart> everything = joined(joined(parts.plates, parts.rails), parts.faces);
+  const std::vector<AirPart> everything = parts.all();
   all.push_back({"lumped_drag_at_1_rpm_N_m", "II.B.2", 9.97e-6, torque_N_m(parts.plates),
                  disc_torque_as_published(parts.plates),
                  "plates are not dimensioned; torque goes with the fourth power of their size"});
@@ -259,6 +251,13 @@ PaperAirParts paper_air_parts(const PaperInputs& in) {
                  // the axis gives the third moment of the rib.
                  face("stiffeners", 0.2025, 0.020, 0.0758, in.rib_drag_coefficient)};
   return parts;
+}
+
+std::vector<AirPart> PaperAirParts::all() const {
+  std::vector<AirPart> all = plates;
+  all.insert(all.end(), rails.begin(), rails.end());
+  all.insert(all.end(), faces.begin(), faces.end());
+  return all;
 }
 
 UnloadedDrag unloaded_drag(const PaperInputs& in) {
@@ -406,12 +405,7 @@ Table sensitivities_table(const std::vector<PaperSensitivity>& all) {
 }  // namespace
 
 Product paper_product(const PaperInputs& inputs) {
-  const PaperAirParts parts = paper_air_parts(inputs);
-  std::vector<AirPart> all = parts.plates;
-  all.insert(all.end(), parts.rails.begin(), parts.rails.end());
-  all.insert(all.end(), parts.faces.begin(), parts.faces.end());
-  constexpr double rate_rad_s = 2.0 * pi / 60.0;  // 1 rpm
-  Table air = air_table(all, Air{}, rate_rad_s);
+  Table air = air_table(paper_air_parts(inputs).all(), room, one_rpm_rad_s);
   air.name = "paper_external_air";
   air.title = "External air on the paper's platform at 1 rpm, by part";
   Product product;

@@ -86,6 +86,7 @@ std::vector<PaperSensitivity> paper_sensitivities(const PaperInputs& inputs = {}
 // The paper's platform as separate bodies: the plates, the rails, the blunt faces.
 struct PaperAirParts {
   std::vector<AirPart> plates, rails, faces;
+  std::vector<AirPart> all() const;
 };
 PaperAirParts paper_air_parts(const PaperInputs& inputs = {});
 

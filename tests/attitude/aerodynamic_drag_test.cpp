@@ -58,7 +58,7 @@ Vec3 drag_N_m(const AttitudeModel& in_orbit, const Quat& attitude, double time_s
   const std::string path = sphere_table();
   entries.emplace_back("table", node(path.c_str()));
   const AttitudeModel model = with(in_orbit, "aerodynamic_drag", entries);
-  return torque_body_N_m(model, state_of(model, attitude, Vec3::Zero(), time_s));
+  return torque_body_N_m(model, attitude, Vec3::Zero(), time_s);
 }
 
 // Along the equator the atmosphere turns with the orbit, and over the node of a polar orbit across

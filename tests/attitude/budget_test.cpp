@@ -23,13 +23,6 @@ PaperFigure figure(const std::string& quantity) {
   return {};
 }
 
-const Table::Column& column(const Table& t, const std::string& name) {
-  for (const Table::Column& c : t.columns) {
-    if (c.name == name) return c;
-  }
-  throw std::runtime_error("no column " + name);
-}
-
 // Figures that the paper's inputs determine agree to its printed digits.
 TEST(PaperFigures, AreReproducedWhereThePaperGivesTheInputs) {
   EXPECT_NEAR(figure("com_resolution_m").ours, 1.79e-7, 0.005e-7);
@@ -39,10 +32,7 @@ TEST(PaperFigures, AreReproducedWhereThePaperGivesTheInputs) {
   EXPECT_DOUBLE_EQ(figure("energy_of_24_h_Wh").ours, 600.0);
   EXPECT_DOUBLE_EQ(figure("camera_in_plane_arcsec").ours, 12.0);
   EXPECT_DOUBLE_EQ(figure("camera_out_of_plane_arcsec").ours, 37.0);
-}
-
-// 0.2589 g of lithium per ampere hour instead of 0.3.
-TEST(PaperFigures, BatteryWithFaradaysConstant) {
+  // 0.2589 g of lithium per ampere hour instead of 0.3.
   EXPECT_NEAR(figure("battery_shift_m").ours / figure("battery_shift_m").as_published, 0.863, 1e-3);
 }
 
@@ -129,26 +119,33 @@ TEST(BearingComparison, FindsTheErrorsPutIn) {
   EXPECT_NEAR(c.drag_ratio, 20.0, 1e-12);
 }
 
-SettingsNode experiment(const std::vector<std::pair<std::string, SettingsNode>>& budget) {
-  return table(
-      {{"platform", table({{"topology", node("tabletop")},
-                           {"mass_kg", node(7)},
-                           {"inertia_kg_m2", list({numbers({0.1, 0, 0}), numbers({0, 0.1, 0}),
-                                                   numbers({0, 0, 0.19})})},
-                           {"battery_capacity_Ah", node(2.4)}})},
-       {"disturbance",
-        list({table({{"kind", node("turbine_torque")}, {"torque_N_m", node(1.9e-6)}}),
-              table({{"kind", node("static_unbalance")}, {"offset_m", numbers({1e-6, 0, 0})}}),
-              table({{"kind", node("static_unbalance")}, {"offset_m", numbers({0, 1e-7, 0})}}),
-              table(
-                  {{"kind", node("battery_discharge")}, {"shift_m_per_Ah", numbers({0, 1e-6, 0})}}),
-              table({{"kind", node("air_friction")}, {"coefficient", node(3e-5)}})})},
-       {"budget", table(budget)}});
+using Entries = std::vector<std::pair<std::string, SettingsNode>>;
+
+// An experiment with five torques and `more` disturbances.
+SettingsNode experiment(const Entries& budget, const std::vector<SettingsNode>& more = {}) {
+  std::vector<SettingsNode> all = {
+      table({{"kind", node("turbine_torque")}, {"torque_N_m", node(1.9e-6)}}),
+      table({{"kind", node("static_unbalance")}, {"offset_m", numbers({1e-6, 0, 0})}}),
+      table({{"kind", node("static_unbalance")}, {"offset_m", numbers({0, 1e-7, 0})}}),
+      table({{"kind", node("battery_discharge")}, {"shift_m_per_Ah", numbers({0, 1e-6, 0})}}),
+      table({{"kind", node("air_friction")}, {"coefficient", node(3e-5)}})};
+  all.insert(all.end(), more.begin(), more.end());
+  return table({{"platform",
+                 table({{"topology", node("tabletop")},
+                        {"mass_kg", node(7)},
+                        {"inertia_kg_m2",
+                         list({numbers({0.1, 0, 0}), numbers({0, 0.1, 0}), numbers({0, 0, 0.19})})},
+                        {"battery_capacity_Ah", node(2.4)}})},
+                {"disturbance", list(all)},
+                {"budget", table(budget)}});
+}
+
+Budget budget_of(const Entries& budget, const std::vector<SettingsNode>& more = {}) {
+  return read_budget(settings_of(experiment(budget, more)));
 }
 
 TEST(Budget, RanksTorquesAndAddsUpAngles) {
-  const Budget budget =
-      read_budget(settings_of(experiment({{"state_of_charge", node(0.5)}, {"spin_rpm", node(1)}})));
+  const Budget budget = budget_of({{"state_of_charge", node(0.5)}, {"spin_rpm", node(1)}});
   ASSERT_EQ(budget.entries.size(), 5u);
   for (size_t i = 1; i < budget.entries.size(); ++i) {
     EXPECT_GE(budget.entries[i - 1].torque_body_N_m.norm(),
@@ -175,21 +172,13 @@ BudgetEntry entry(const Budget& budget, const std::string& name) {
   throw std::runtime_error("no entry " + name);
 }
 
-SettingsNode with_disturbances(SettingsNode root, const std::vector<SettingsNode>& more) {
-  auto& all = std::get<SettingsNode::Array>(
-      std::get<SettingsNode::Table>(root.value).at("disturbance").value);
-  all.insert(all.end(), more.begin(), more.end());
-  return root;
-}
-
 // The torque is m r a for an acceleration of the floor along x, although the sine is zero at the
 // time of the state. The oscillation does not accumulate an angle.
 TEST(Budget, VibrationCountsWithItsAmplitude) {
   const SettingsNode floor = table({{"kind", node("floor_vibration")},
                                     {"acceleration_m_s2", numbers({2e-3, 0, 0})},
                                     {"frequency_Hz", node(8)}});
-  const BudgetEntry vibration = entry(
-      read_budget(settings_of(with_disturbances(experiment({}), {floor}))), "floor_vibration");
+  const BudgetEntry vibration = entry(budget_of({}, {floor}), "floor_vibration");
   EXPECT_NEAR(vibration.torque_body_N_m.norm(), 7 * 1e-7 * 2e-3, 7e-10 * 0.001);
   EXPECT_LT(vibration.angle_after_minute_rad, 1e-10);
 }
@@ -205,12 +194,11 @@ TEST(Budget, ChangesOfConditionsCountByTheirEffect) {
   const Vec3 offset_m(1e-6, 1e-7, 0);
   const Vec3 change_m_s2 =
       standard_gravity_m_s2 * Vec3(0, std::sin(tilt_rad), 1 - std::cos(tilt_rad));
-  const Budget leaning = read_budget(settings_of(with_disturbances(experiment({}), {gravity})));
+  const Budget leaning = budget_of({}, {gravity});
   EXPECT_LT(
       (entry(leaning, "gravity_tilt").torque_body_N_m - 7 * offset_m.cross(change_m_s2)).norm(),
       1e-15);
-  const Budget spinning =
-      read_budget(settings_of(with_disturbances(experiment({{"spin_rpm", node(1)}}), {inertia})));
+  const Budget spinning = budget_of({{"spin_rpm", node(1)}}, {inertia});
   EXPECT_NEAR(std::abs(entry(spinning, "inertia_error").torque_body_N_m.y()),
               delta_kg_m2 * rate_rad_s * rate_rad_s, 1e-12);
 }
@@ -222,8 +210,7 @@ TEST(Budget, AnUnbentAppendageIsNoTorque) {
                                    {"frequency_Hz", node(1)},
                                    {"damping", node(0.02)},
                                    {"inertia_kg_m2", node(0.001)}});
-  const Budget budget = read_budget(settings_of(
-      with_disturbances(experiment({{"tilt_deg", node(30)}, {"spin_rpm", node(1)}}), {wing})));
+  const Budget budget = budget_of({{"tilt_deg", node(30)}, {"spin_rpm", node(1)}}, {wing});
   EXPECT_EQ(entry(budget, "flexible_mode").torque_body_N_m.norm(), 0.0);
   const Product product = budget_product(budget);
   for (const Plot::Curve& curve : product.plots.front().curves) {
@@ -232,10 +219,10 @@ TEST(Budget, AnUnbentAppendageIsNoTorque) {
 }
 
 TEST(Budget, StateIsTiltHeadingAndRate) {
-  const Budget budget = read_budget(settings_of(experiment({{"tilt_deg", node(30)},
-                                                            {"heading_deg", node(90)},
-                                                            {"spin_rpm", node(2)},
-                                                            {"charge_drawn_Ah", node(1)}})));
+  const Budget budget = budget_of({{"tilt_deg", node(30)},
+                                   {"heading_deg", node(90)},
+                                   {"spin_rpm", node(2)},
+                                   {"charge_drawn_Ah", node(1)}});
   const Vec3 up = budget.state.lab_from_body * Vec3::UnitZ();
   EXPECT_LT((up - Vec3(0, 0.5, std::cos(pi / 6))).norm(), 1e-12);
   EXPECT_LT(
@@ -245,15 +232,13 @@ TEST(Budget, StateIsTiltHeadingAndRate) {
 }
 
 TEST(Budget, ProductHoldsTheTablesAndPlots) {
-  const Budget budget =
-      read_budget(settings_of(experiment({{"tilt_deg", node(10)},
-                                          {"spin_rpm", node(1)},
-                                          {"light", table({{"power_W", node(25.8)}})}})));
+  const Budget budget = budget_of(
+      {{"tilt_deg", node(10)}, {"spin_rpm", node(1)}, {"light", table({{"power_W", node(25.8)}})}});
   const Product product = budget_product(budget);
   const Table& ranked = table_named(product, "budget");
-  EXPECT_EQ(column(ranked, "disturbance").texts.size(), 5u);
+  EXPECT_EQ(ranked.column("disturbance").texts.size(), 5u);
   double sum = 0;
-  for (const double fraction : column(ranked, "share_of_sum").values) sum += fraction;
+  for (const double fraction : ranked.column("share_of_sum").values) sum += fraction;
   EXPECT_NEAR(sum, 1.0, 1e-12);
   for (const Table& t : product.tables) {
     size_t rows = 0;
@@ -272,11 +257,10 @@ TEST(Budget, ReportsTheValidityOfTheAirLawsForEveryPart) {
   const SettingsNode friction =
       table({{"kind", node("air_friction")},
              {"part", list({table({{"shape", node("disc")}, {"radius_m", node(0.2)}})})}});
-  const Product product = budget_product(
-      read_budget(settings_of(with_disturbances(experiment({{"spin_rpm", node(1)}}), {friction}))));
+  const Product product = budget_product(budget_of({{"spin_rpm", node(1)}}, {friction}));
   const Table& air = table_named(product, "external_air");
-  EXPECT_NEAR(column(air, "reynolds").values.front(), 278.0, 1.0);
-  EXPECT_EQ(column(air, "law_holds").texts.front(), "yes");
+  EXPECT_NEAR(air.column("reynolds").values.front(), 278.0, 1.0);
+  EXPECT_EQ(air.column("law_holds").texts.front(), "yes");
 }
 
 // Figure 5: the tabletop peaks at 45 deg; the dumbbell is sin θ (1 − cos θ) and still rises there.
@@ -295,16 +279,16 @@ TEST(Budget, RefusesAStateOfChargeWithoutABattery) {
       std::get<SettingsNode::Table>(std::get<SettingsNode::Table>(root.value).at("platform").value);
   platform.erase("battery_capacity_Ah");
   EXPECT_THROW(read_budget(settings_of(root)), InputError);
-  EXPECT_THROW(read_budget(settings_of(experiment({{"tilt", node(3)}}))), InputError);
+  EXPECT_THROW(budget_of({{"tilt", node(3)}}), InputError);
 }
 
 TEST(Budget, RefusesChargesThatCannotBeMeant) {
-  for (const auto& charge : std::vector<std::vector<std::pair<std::string, SettingsNode>>>{
-           {{"state_of_charge", node(0.5)}, {"charge_drawn_Ah", node(1)}},
-           {{"charge_drawn_Ah", node(2.5)}}}) {
-    EXPECT_THROW(read_budget(settings_of(experiment(charge))), InputError);
+  for (const auto& charge :
+       std::vector<Entries>{{{"state_of_charge", node(0.5)}, {"charge_drawn_Ah", node(1)}},
+                            {{"charge_drawn_Ah", node(2.5)}}}) {
+    EXPECT_THROW(budget_of(charge), InputError);
   }
-  EXPECT_NO_THROW(read_budget(settings_of(experiment({{"charge_drawn_Ah", node(2.4)}}))));
+  EXPECT_NO_THROW(budget_of({{"charge_drawn_Ah", node(2.4)}}));
 }
 
 // The power (40 deg/1 deg)^200 overflows.
@@ -314,9 +298,7 @@ TEST(Budget, RefusesATorqueThatIsNoNumber) {
                                   {"tilt_powers", numbers({200})},
                                   {"tilt_reference_deg", node(1)},
                                   {"coefficients_N_m", numbers({1})}});
-  EXPECT_THROW(
-      read_budget(settings_of(with_disturbances(experiment({{"tilt_deg", node(40)}}), {law}))),
-      NumericalError);
+  EXPECT_THROW(budget_of({{"tilt_deg", node(40)}}, {law}), NumericalError);
 }
 
 TEST(Budget, ComparesACatalogue) {
@@ -327,16 +309,11 @@ TEST(Budget, ComparesACatalogue) {
                                       {"inlet_bar", node(5)},
                                       {"load_N", node(300)},
                                       {"drag_N_m", node(1e-4)}});
-  const Product product =
-      budget_product(read_budget(settings_of(experiment({{"bearing", list({bearing})}}))));
+  const Product product = budget_product(budget_of({{"bearing", list({bearing})}}));
   const double expected = std::abs(load_capacity_N({0.03, pi / 4, 5e-6}, 5e5, 101325.0) / 300 - 1);
-  bool found = false;
-  for (const Quantity& q : product.quantities) {
-    if (q.name != "bearing_load_mean_error") continue;
-    found = true;
-    EXPECT_NEAR(q.estimate.value, expected, 1e-12);
-  }
-  EXPECT_TRUE(found);
+  const Quantity* error = find_quantity(product, "bearing_load_mean_error");
+  ASSERT_NE(error, nullptr);
+  EXPECT_NEAR(error->estimate.value, expected, 1e-12);
 }
 
 }  // namespace

@@ -86,6 +86,12 @@ inline Quat turned(double angle_rad, const Vec3& axis) {
 inline Vec3 torque_body_N_m(const AttitudeModel& model, const PlatformState& state) {
   return disturbance_torques_body_N_m(model, state).back();
 }
+inline Vec3 torque_body_N_m(const AttitudeModel& model, const Quat& lab_from_body,
+                            const Vec3& rate_body_rad_s = Vec3::Zero(), double time_s = 0.0,
+                            double charge_drawn_C = 0.0) {
+  return torque_body_N_m(model,
+                         state_of(model, lab_from_body, rate_body_rad_s, time_s, charge_drawn_C));
+}
 
 inline PlatformState propagated(const AttitudeModel& model, const PlatformState& start,
                                 double end_s, double tolerance = 1e-12) {

@@ -196,8 +196,9 @@ TEST_P(EveryDisturbance, IsFiniteAtRestUprightAndUpsideDown) {
     std::vector<Lanes> derivatives(y.size() * DualLanes::block, Lanes(0.0));
     Dynamics::Block block;
     for (int k = 0; k < DualLanes::block; ++k) block.state[k] = k;
+    Dynamics::Workspace room;
     dynamics.derivatives(Lanes(17.3), model.schedule.at(17.3), lanes.data(), block,
-                         derivatives.data());
+                         derivatives.data(), room);
     for (const Lanes& derivative : derivatives) EXPECT_TRUE(std::isfinite(derivative[0]));
   }
 }
@@ -221,8 +222,9 @@ std::vector<double> exact_column(const Dynamics& dynamics, double time_s,
   block.state[0] = component;
   block.parameter[0] = parameter;
   std::vector<Lanes> all(y.size() * DualLanes::block, Lanes(0.0));
+  Dynamics::Workspace room;
   dynamics.derivatives(Lanes(time_s), dynamics.model().schedule.at(time_s), lanes.data(), block,
-                       all.data());
+                       all.data(), room);
   std::vector<double> column;
   for (size_t c = 0; c < y.size(); ++c) column.push_back(all[c * DualLanes::block][0]);
   return column;

@@ -25,7 +25,7 @@ Vec3 torque(const Entries& entries, const Quat& lab_from_body, const Vec3& rate 
   AttitudeModel model = bench_model();
   model.schedule.append(0.0, {.command_body_N_m = {3e-4, 0.0, 4e-4}});
   model = with(model, "empirical_torque", entries);
-  return torque_body_N_m(model, state_of(model, lab_from_body, rate, time_s, charge_C));
+  return torque_body_N_m(model, lab_from_body, rate, time_s, charge_C);
 }
 
 void expect_near(const Vec3& found, const Vec3& expected) {

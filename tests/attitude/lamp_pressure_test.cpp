@@ -43,7 +43,7 @@ TEST(LampPressureLaw, IsProportionalToTheCurrent) {
     model = with(model, "lamp_pressure",
                  {{"torque_lab_N_m", numbers({1e-5, -2e-5, 3e-5})}, {"led_current_A", node(0.7)}});
     // After a quarter turn about the vertical, lab x is the body's −y and lab y its x.
-    return torque_body_N_m(model, state_of(model, turned(0.5 * pi, Vec3::UnitZ())));
+    return torque_body_N_m(model, turned(0.5 * pi, Vec3::UnitZ()));
   };
   const Vec3 half = torque_body({.led_current_A = 0.35, .lamps_as_stated = 0.0}),
              unknown = torque_body({}), dark = torque_body({.lamps_as_stated = 0.0});

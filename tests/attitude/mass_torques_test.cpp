@@ -54,7 +54,7 @@ TEST(BatteryDischarge, ReproducesThePaperFromItsCells) {
             {"cell", list({table({{"electrodes_m", numbers({0.03225, 0, 0})}})})}});
   const PlatformState empty = state_of(model, Quat::Identity(), Vec3::Zero(), 0.0, 2.4 * 3600);
   EXPECT_NEAR(torque_body_N_m(model, empty).norm(), 2.3e-4, 0.05e-4);
-  EXPECT_EQ(torque_body_N_m(model, state_of(model, Quat::Identity())).norm(), 0.0);
+  EXPECT_EQ(torque_body_N_m(model, Quat::Identity()).norm(), 0.0);
 }
 
 // 1 µm per ampere hour at 2 A for half an hour is 1 µm.
@@ -73,7 +73,7 @@ TEST(ElasticSag, AnisoelasticTorqueOfALumpedPlatform) {
   const AttitudeModel model = with(bench_model(), "elastic_sag",
                                    {{"compliance_s2", numbers({7.0 / kx, 7.0 / kx, 7.0 / kz})}});
   for (const double tilt : {0.05, 0.5, 1.0}) {
-    const Vec3 torque = torque_body_N_m(model, state_of(model, turned(tilt, Vec3::UnitY())));
+    const Vec3 torque = torque_body_N_m(model, turned(tilt, Vec3::UnitY()));
     const double free = weight * weight * (1 / kx - 1 / kz) * std::sin(tilt) * std::cos(tilt);
     const double balanced = free + weight * weight / kz * std::sin(tilt);
     EXPECT_NEAR(torque.y() / balanced, 1.0, 1e-12);
@@ -97,12 +97,8 @@ TEST(ElasticSag, BeamsGiveTheTorqueOfTheirClosedForms) {
                                                            {"count", node(4)}})}});
   for (const double tilt : {0.1, 0.5, 1.0}) {
     const Quat q = turned(tilt, Vec3::UnitY());
-    EXPECT_NEAR(
-        torque_body_N_m(dumbbell, state_of(dumbbell, q)).y() / sag_torque_N_m(arms, tilt, g), 1.0,
-        1e-12);
-    EXPECT_NEAR(
-        torque_body_N_m(tabletop, state_of(tabletop, q)).y() / sag_torque_N_m(beams, tilt, g), 1.0,
-        1e-12);
+    EXPECT_NEAR(torque_body_N_m(dumbbell, q).y() / sag_torque_N_m(arms, tilt, g), 1.0, 1e-12);
+    EXPECT_NEAR(torque_body_N_m(tabletop, q).y() / sag_torque_N_m(beams, tilt, g), 1.0, 1e-12);
   }
 }
 
@@ -120,11 +116,9 @@ TEST(StepperQuantization, ReproducesThePaper) {
   auto one_axis = usual;
   one_axis.emplace_back("rounding_steps", numbers({0.5, 0, 0, 0, 0, 0, 0, 0}));
   const AttitudeModel single = with(bench_model(), "stepper_quantization", one_axis);
-  EXPECT_NEAR(torque_body_N_m(single, state_of(single, Quat::Identity())).norm(), 1.23e-5,
-              0.005e-5);
+  EXPECT_NEAR(torque_body_N_m(single, Quat::Identity()).norm(), 1.23e-5, 0.005e-5);
   const AttitudeModel worst = with(bench_model(), "stepper_quantization", usual);
-  EXPECT_NEAR(torque_body_N_m(worst, state_of(worst, Quat::Identity())).norm(),
-              std::sqrt(2.0) * 1.226e-5, 0.005e-5);
+  EXPECT_NEAR(torque_body_N_m(worst, Quat::Identity()).norm(), std::sqrt(2.0) * 1.226e-5, 0.005e-5);
   auto too_far = usual;
   too_far.emplace_back("rounding_steps", numbers({0.6, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_THROW(make(bench_model(), "stepper_quantization", too_far), InputError);
@@ -159,8 +153,7 @@ TEST(FloorVibration, PlaysSpectraAndRecordings) {
   double sum = 0;
   constexpr int samples = 4000;
   for (int i = 0; i < samples; ++i) {
-    sum += std::pow(
-        torque_body_N_m(noisy, state_of(noisy, Quat::Identity(), Vec3::Zero(), 0.37 * i)).x(), 2);
+    sum += std::pow(torque_body_N_m(noisy, Quat::Identity(), Vec3::Zero(), 0.37 * i).x(), 2);
   }
   EXPECT_NEAR(sum / samples / (std::pow(7.0 * 1e-5, 2) * 9e-8), 1.0, 0.06);
 
@@ -169,12 +162,9 @@ TEST(FloorVibration, PlaysSpectraAndRecordings) {
                               "0,0.1,0,0\n1,0.2,0,0\n2,0.3,0,0\n");
   const AttitudeModel recorded = with(
       base, "floor_vibration", {{"accelerogram_file", node(path.c_str())}, {"scale", node(2)}});
-  EXPECT_NEAR(
-      torque_body_N_m(recorded, state_of(recorded, Quat::Identity(), Vec3::Zero(), 1.0)).y(),
-      7.0 * 1e-5 * 0.4, 1e-15);
-  EXPECT_EQ(
-      torque_body_N_m(recorded, state_of(recorded, Quat::Identity(), Vec3::Zero(), 5.0)).norm(),
-      0.0);
+  EXPECT_NEAR(torque_body_N_m(recorded, Quat::Identity(), Vec3::Zero(), 1.0).y(), 7.0 * 1e-5 * 0.4,
+              1e-15);
+  EXPECT_EQ(torque_body_N_m(recorded, Quat::Identity(), Vec3::Zero(), 5.0).norm(), 0.0);
 }
 
 }  // namespace

@@ -210,13 +210,13 @@ TEST(OrbitMessage, UnsupportedFeaturesAreRejected) {
   // States an hour apart, about two per revolution, are too few for a polynomial.
   EXPECT_THROW(orbit_of(oem_text(ellipse, 14400.0, 3600.0)), InputError);
   // Numbers that are too small by a factor of 1000, so not in kilometres.
-  const auto metres = new_file(oem_text(
+  const auto too_small = new_file(oem_text(
       [](double t_s) {
         const auto [r, v] = ellipse(t_s);
         return std::array<Vec3, 2>{Vec3(1e-3 * r), Vec3(1e-3 * v)};
       },
       600.0, 60.0));
-  EXPECT_THROW(OrbitEphemeris{metres}, InputError);
+  EXPECT_THROW(OrbitEphemeris{too_small}, InputError);
   EXPECT_THROW(OrbitEphemeris(right).at(1000.0), NumericalError);
 }
 
@@ -233,7 +233,7 @@ TEST(Orbit, OfAnEphemerisHasTheGradientOfItsStates) {
   const Vec3 position_m = ellipse(4200.0)[0], u = attitude.conjugate() * position_m.normalized();
   const Vec3 expected = 3.0 * 3.986004418e14 / std::pow(position_m.norm(), 3) *
                         u.cross(Vec3(10 * u.x(), 30 * u.y(), 25 * u.z()));
-  const Vec3 found = torque_body_N_m(model, state_of(model, attitude, Vec3::Zero(), 3600.0));
+  const Vec3 found = torque_body_N_m(model, attitude, Vec3::Zero(), 3600.0);
   EXPECT_LT((found - expected).norm(), 1e-7 * expected.norm());
 }
 
@@ -265,7 +265,7 @@ TEST(Orbit, OfStatesOnACircleIsTheCircle) {
   const auto at = [](const AttitudeModel& model, double t_s) {
     const AttitudeModel full =
         with(model, "magnetic_dipole", {{"dipole_A_m2", numbers({1, 2, 3})}});
-    return torque_body_N_m(full, state_of(full, Quat::Identity(), Vec3::Zero(), t_s));
+    return torque_body_N_m(full, Quat::Identity(), Vec3::Zero(), t_s);
   };
   for (const double t_s : {0.0, 777.0, 3210.0, 5990.0}) {
     EXPECT_LT((at(stated, t_s) - at(read, t_s)).norm(), 1e-6 * at(stated, t_s).norm()) << t_s;
@@ -283,7 +283,7 @@ TEST(Orbit, TakesTheSunOfTheEnvironment) {
     orbit.emplace_back("inclination_deg", node(0));
     model = with(with(model, "orbit", orbit), "radiation_pressure",
                  {{"area_moment_m3", numbers({0, 0, 1})}});
-    return torque_body_N_m(model, state_of(model, Quat::Identity())).norm();
+    return torque_body_N_m(model, Quat::Identity()).norm();
   };
   const double lit_N_m = pressure(Vec3::UnitX(), {});  // the satellite is on +x
   EXPECT_NEAR(lit_N_m, 1361.0 / 299792458.0, 0.01 * lit_N_m);

@@ -26,7 +26,7 @@ struct Offset final : LawOf<Offset> {
   static double values_of_start(const ParametersAndStates<DualLanes>& own) {
     return own[ScalarKey{"p", 3}].value[0];
   }
-  std::vector<Switch> switches(std::span<const Parameter> p, double, double) const override {
+  std::vector<Switch> switches(std::span<const Parameter> p) const override {
     return {{p[3].value, 3}};
   }
 };

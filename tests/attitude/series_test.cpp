@@ -57,7 +57,7 @@ TEST(TimeSeries, OutsideHoldsOrIsZero) {
   EXPECT_EQ(held.at(9.0), Vec3(4, 5, 6));
   EXPECT_EQ(zero.at(9.0), Vec3::Zero());
   EXPECT_LT((zero.at(1.5) - Vec3(2.5, 3.5, 4.5)).norm(), 1e-15);
-  EXPECT_EQ(zero.ends_within(0, 1.5), std::vector<double>{1.0});
+  EXPECT_EQ(zero.ends_s(), (std::array{1.0, 2.0}));
 }
 
 TEST(TimeSeries, RefusesDisorder) {

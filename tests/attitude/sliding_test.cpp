@@ -31,17 +31,19 @@ struct Place {
   double x, y;
 };
 
+Place end_of_run(const std::string& toml) {
+  const Recording recording = propagate(run_of(toml)).recording;
+  return {recording.find("x_m")->values.back(), recording.find("y_m")->values.back()};
+}
+
 Place end_of(const std::string& disturbance) {
-  const PropagationResult result = propagate(run_of(puck + "[[disturbance]]\n" + disturbance));
-  return {result.recording.find("x_m")->values.back(), result.recording.find("y_m")->values.back()};
+  return end_of_run(puck + "[[disturbance]]\n" + disturbance);
 }
 
 // The end position of a run with a force that is commanded from one second on.
 Place end_of_commanded(const std::string& command, const std::string& disturbance) {
   const std::string acting = disturbance.empty() ? "" : "[[disturbance]]\n" + disturbance;
-  const PropagationResult result =
-      propagate(run_of(puck + "[[propagate.command]]\ntime_s = 1\n" + command + acting));
-  return {result.recording.find("x_m")->values.back(), result.recording.find("y_m")->values.back()};
+  return end_of_run(puck + "[[propagate.command]]\ntime_s = 1\n" + command + acting);
 }
 
 TEST(Sliding, FreelyItGoesStraight) {
@@ -66,12 +68,11 @@ TEST(Sliding, ForceFixedInTheBodyTurnsWithIt) {
   const double across = a_m_s2 * (turn_rad - std::sin(turn_rad)) / 0.25;
   const std::string turning = "initial_rate_rad_s = [0, 0, 0.5]\n";
   const std::string acting = "[[disturbance]]\nkind = \"body_force\"\nforce_N = [0.6, 0]\n";
-  const PropagationResult own = propagate(run_of(puck + turning + acting));
-  const PropagationResult commanded = propagate(
-      run_of(puck + turning + "[[propagate.command]]\ntime_s = 0\nforce_body_N = [0.6, 0]\n"));
-  for (const PropagationResult* result : {&own, &commanded}) {
-    EXPECT_NEAR(result->recording.find("x_m")->values.back(), 0.1 + 0.3 * 5 + along, 1e-8);
-    EXPECT_NEAR(result->recording.find("y_m")->values.back(), -0.2 + 0.4 * 5 + across, 1e-8);
+  const std::string commanded = "[[propagate.command]]\ntime_s = 0\nforce_body_N = [0.6, 0]\n";
+  for (const std::string& force : {acting, commanded}) {
+    const Place end = end_of_run(puck + turning + force);
+    EXPECT_NEAR(end.x, 0.1 + 0.3 * 5 + along, 1e-8);
+    EXPECT_NEAR(end.y, -0.2 + 0.4 * 5 + across, 1e-8);
   }
 }
 
@@ -91,43 +92,39 @@ TEST(Sliding, ThrustersThatGiveLessAccelerateLess) {
   EXPECT_NEAR(heavier.x, 0.1 + 0.3 * 5 + 0.5 * 0.4 / 4.0 * 16, 1e-10);
 }
 
-TEST(Sliding, DownASlopeItAccelerates) {
-  const Place end = end_of("kind = \"table_slope\"\nslope_mrad = [2, -1]\n");
-  EXPECT_NEAR(end.x, 0.1 + 0.3 * 5 - 0.5 * g * 2e-3 * 25, 1e-10);
-  EXPECT_NEAR(end.y, -0.2 + 0.4 * 5 + 0.5 * g * 1e-3 * 25, 1e-10);
-}
-
-// v = v₀ exp(−c t/m).
-TEST(Sliding, DragFadesItExponentially) {
-  const Place end = end_of("kind = \"sliding_drag\"\ncoefficient_kg_s = 0.5\n");
-  const double way = (1.0 - std::exp(-0.25 * 5)) / 0.25;
-  EXPECT_NEAR(end.x, 0.1 + 0.3 * way, 1e-10);
-  EXPECT_NEAR(end.y, -0.2 + 0.4 * way, 1e-10);
-}
-
-// v = v₀/(1 + k v₀ t/m), so that the distance is (m/k) ln(1 + k v₀ t/m).
-TEST(Sliding, AirFadesItByTheSquare) {
-  const Place end = end_of("kind = \"sliding_air_drag\"\ncoefficient_kg_m = 0.8\n");
-  const double way = std::log(1.0 + 0.4 * 0.5 * 5) / 0.4;
-  EXPECT_NEAR(end.x, 0.1 + 0.6 * way, 1e-9);
-  EXPECT_NEAR(end.y, -0.2 + 0.8 * way, 1e-9);
-}
-
-// The platform stops after v₀²/(2 μ g) for any mass and then only creeps.
-TEST(Sliding, DryFrictionStopsIt) {
-  const double friction = 0.02, way = 0.25 / (2.0 * friction * g);
-  const Place end = end_of("kind = \"sliding_friction\"\ncoefficient = 0.02\n");
-  EXPECT_NEAR(end.x, 0.1 + 0.6 * way, 1e-4);
-  EXPECT_NEAR(end.y, -0.2 + 0.8 * way, 1e-4);
-}
-
-// An oscillation about f/k, with ω² = k/m.
-TEST(Sliding, ASpringSwingsIt) {
-  const Place end =
-      end_of("kind = \"sliding_spring\"\nstiffness_N_per_m = 0.5\npull_N = [0.1, 0]\n");
+// From (0.1, −0.2) m at (0.3, 0.4) m/s, 0.5 m/s in all, with 2 kg during 5 s.
+TEST(Sliding, EveryForceMovesItByItsClosedForm) {
+  // Viscous drag, v = v₀ exp(−c t/m); form drag, v = v₀/(1 + k v₀ t/m); dry friction stops the
+  // platform after v₀²/(2 μ g) for any mass, and then it only creeps. A spring swings it about f/k
+  // with ω² = k/m.
+  const double viscous = (1.0 - std::exp(-0.25 * 5)) / 0.25,
+               form = std::log(1.0 + 0.4 * 0.5 * 5) / 0.4, dry = 0.25 / (2.0 * 0.02 * g);
   const double w = 0.5, c = std::cos(w * 5), s = std::sin(w * 5) / w;
-  EXPECT_NEAR(end.x, 0.2 + (0.1 - 0.2) * c + 0.3 * s, 1e-9);
-  EXPECT_NEAR(end.y, -0.2 * c + 0.4 * s, 1e-9);
+  struct Case {
+    const char* disturbance;
+    Place end;
+    double tolerance_m;
+  };
+  for (const Case& one :
+       {Case{"kind = \"table_slope\"\nslope_mrad = [2, -1]\n",
+             {0.1 + 0.3 * 5 - 0.5 * g * 2e-3 * 25, -0.2 + 0.4 * 5 + 0.5 * g * 1e-3 * 25},
+             1e-10},
+        Case{"kind = \"sliding_drag\"\ncoefficient_kg_s = 0.5\n",
+             {0.1 + 0.3 * viscous, -0.2 + 0.4 * viscous},
+             1e-10},
+        Case{"kind = \"sliding_air_drag\"\ncoefficient_kg_m = 0.8\n",
+             {0.1 + 0.6 * form, -0.2 + 0.8 * form},
+             1e-9},
+        Case{"kind = \"sliding_friction\"\ncoefficient = 0.02\n",
+             {0.1 + 0.6 * dry, -0.2 + 0.8 * dry},
+             1e-4},
+        Case{"kind = \"sliding_spring\"\nstiffness_N_per_m = 0.5\npull_N = [0.1, 0]\n",
+             {0.2 + (0.1 - 0.2) * c + 0.3 * s, -0.2 * c + 0.4 * s},
+             1e-9}}) {
+    const Place end = end_of(one.disturbance);
+    EXPECT_NEAR(end.x, one.end.x, one.tolerance_m) << one.disturbance;
+    EXPECT_NEAR(end.y, one.end.y, one.tolerance_m) << one.disturbance;
+  }
 }
 
 // A drag on the rotation reduces only the rotation.
@@ -145,6 +142,9 @@ TEST(Sliding, ReportsTheMistake) {
                              "slope_rad = [1, 2, 3]\n"),
                InputError);
   EXPECT_THROW(run_of("[platform]\ntopology = \"planar\"\naxis = \"x\"\n"), InputError);
+  // A force of a command has two components.
+  EXPECT_THROW(end_of_commanded("force_N = [0.4]\n", ""), InputError);
+  EXPECT_THROW(end_of_commanded("force_body_N = [0.4, 0, 0]\n", ""), InputError);
 }
 
 }  // namespace

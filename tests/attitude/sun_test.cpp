@@ -187,11 +187,11 @@ TEST(Sun, PressesBesideTheCentreOfMass) {
   model.environment = environment_of("[sun]\ndirection = [0, 5, 0]\ndistance_au = 2");
   model = with(model, "radiation_pressure", {{"area_moment_m3", numbers({0, 0, 0.5})}});
   const double pressure_Pa = 1361.0 / 299792458.0 / 4.0;
-  const Vec3 upright = torque_body_N_m(model, state_of(model, Quat::Identity()));
+  const Vec3 upright = torque_body_N_m(model, Quat::Identity());
   EXPECT_NEAR((upright - pressure_Pa * Vec3(0.5, 0, 0)).norm(), 0.0, 1e-18);
   // After a rotation by a about x, the Sun is at (0, cos a, −sin a) in the body.
   const double a = 0.4;
-  const Vec3 leaning = torque_body_N_m(model, state_of(model, turned(a, Vec3::UnitX())));
+  const Vec3 leaning = torque_body_N_m(model, turned(a, Vec3::UnitX()));
   EXPECT_NEAR((leaning - pressure_Pa * Vec3(0.5 * std::cos(a), 0, 0)).norm(), 0.0, 1e-18);
   EXPECT_THROW(make(bench_model(), "radiation_pressure", {{"area_moment_m3", numbers({0, 0, 1})}}),
                InputError);

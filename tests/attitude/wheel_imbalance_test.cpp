@@ -23,7 +23,7 @@ AttitudeModel free_body(double inertia_kg_m2) {
 
 Vec3 torque_at(const Entries& entries, double time_s) {
   const AttitudeModel model = with(free_body(1.0), "wheel_imbalance", entries);
-  return torque_body_N_m(model, state_of(model, Quat::Identity(), Vec3::Zero(), time_s));
+  return torque_body_N_m(model, Quat::Identity(), Vec3::Zero(), time_s);
 }
 
 // 1 g cm at 3000 rpm pulls with 1e-5 kg m (100π/s)² = 0.98696 N, 1 g cm² turns with 9.8696e-3 N m.

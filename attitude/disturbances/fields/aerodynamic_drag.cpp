@@ -76,15 +76,11 @@ class AerodynamicDrag final : public TorqueLaw<AerodynamicDrag<Density>> {
     return own[factor] * pressure_Pa * look_up_towards<T>(surface_, now.to_body(velocity_m_s));
   }
 
-  std::vector<Switch> switches(std::span<const Parameter>, [[maybe_unused]] double from_s,
-                               [[maybe_unused]] double to_s) const override {
-    std::vector<Switch> ends;
+  std::vector<Switch> switches(std::span<const Parameter>) const override {
     if constexpr (std::is_same_v<Density, RecordedDensity>) {
-      for (const double t_s : density_.density_kg_m3.ends_within(from_s, to_s)) {
-        ends.push_back({t_s, -1});
-      }
+      return switches_at(density_.density_kg_m3.ends_s());
     }
-    return ends;
+    return {};
   }
 
  private:

@@ -55,11 +55,8 @@ class HelmholtzCage final : public LawOf<HelmholtzCage> {
     now.magnetic_field_lab_T += (1.0 + own[gain_error]) * missing_T;
   }
 
-  std::vector<Switch> switches(std::span<const Parameter>, double from_s,
-                               double to_s) const override {
-    std::vector<Switch> ends;
-    for (const double t_s : wanted_lab_T_.ends_within(from_s, to_s)) ends.push_back({t_s, -1});
-    return ends;
+  std::vector<Switch> switches(std::span<const Parameter>) const override {
+    return switches_at(wanted_lab_T_.ends_s());
   }
 
  private:

@@ -3,14 +3,12 @@
 namespace photorque {
 namespace {
 
-std::vector<Switch> switches_of(const std::vector<LampGroup>& groups, double from_s, double to_s) {
-  std::vector<Switch> all;
+std::vector<Switch> switches_of(const std::vector<LampGroup>& groups) {
+  std::vector<double> all_s;
   for (const LampGroup& group : groups) {
-    for (const double time_s : group.switches_s) {
-      if (time_s > from_s && time_s < to_s) all.push_back({time_s, -1});
-    }
+    all_s.insert(all_s.end(), group.switches_s.begin(), group.switches_s.end());
   }
-  return all;
+  return switches_at(all_s);
 }
 
 // The value and, for DualLanes, its derivatives by the chain rule: Σ slope · derivative of the
@@ -42,9 +40,8 @@ class TabulatedLight final : public TorqueLaw<TabulatedLight> {
     return sum;
   }
 
-  std::vector<Switch> switches(std::span<const Parameter>, double from_s,
-                               double to_s) const override {
-    return switches_of(groups_, from_s, to_s);
+  std::vector<Switch> switches(std::span<const Parameter>) const override {
+    return switches_of(groups_);
   }
 
  private:
@@ -85,9 +82,8 @@ class TracedLight final : public TorqueLaw<TracedLight> {
     return now.traced_light_body_N_m;
   }
 
-  std::vector<Switch> switches(std::span<const Parameter>, double from_s,
-                               double to_s) const override {
-    return switches_of(groups_, from_s, to_s);
+  std::vector<Switch> switches(std::span<const Parameter>) const override {
+    return switches_of(groups_);
   }
 
  private:

@@ -77,17 +77,14 @@ struct FlexibleMode final : LawOf<FlexibleMode<changes_inertia>> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
-  const PlacedParameters axis = vector_parameter(settings, direction);
-  const Parameters& a = axis.parameters;
-  const Vec3 along(a[0].value, a[1].value, a[2].value);
-  if (!(along.norm() > 0.0)) throw settings.error(direction.name, "a zero vector", "a direction");
-  const Vec3 unit = along.normalized();
+  const PlacedParameters axis = direction_parameter(settings, direction);
+  const Vec3 unit = vector_at(axis.parameters, 0).normalized();
   const double whole_kg_m2 = unit.dot(context.platform.inertia_kg_m2 * unit);
   const bool has_own_rate = settings.has(key::initial_rate);
   const Range part_of_whole{0.0, whole_kg_m2, true, true};
   const PlacedParameters f = scalar_parameter(settings, frequency),
                          zeta = scalar_parameter(settings, damping),
-                         J = scalar_parameter(settings, inertia, part_of_whole);
+                         J = scalar_parameter(settings, inertia.within(part_of_whole));
   const std::vector<ExtraState> states{
       {.name = angle.name,
        .initial = settings.get(key::initial_angle),

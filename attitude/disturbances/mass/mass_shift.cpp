@@ -18,11 +18,8 @@ struct MassShift final : LawOf<MassShift> {
     now.move_mass(active_from(now.time_s, start_s) * own[offset]);
   }
 
-  std::vector<Switch> switches(std::span<const Parameter> parameters, double from_s,
-                               double to_s) const override {
-    const double start_s = parameters[start.first].value;
-    if (start_s > from_s && start_s < to_s) return {{start_s, start.first}};
-    return {};
+  std::vector<Switch> switches(std::span<const Parameter> parameters) const override {
+    return {{parameters[start.first].value, start.first}};
   }
 };
 

@@ -12,13 +12,8 @@ constexpr NumberKey latency("latency_s", Range::not_negative(),
 }  // namespace key
 
 // The delay is one of the schedule: Disturbance::command_delay_s.
-struct Nothing final : LawOf<Nothing> {
-  template <class T>
-  void apply(const ParametersAndStates<T>&, EvaluationContext<T>&) const {}
-};
-
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  Disturbance disturbance = make_disturbance<Nothing>({}, Stage::conditions);
+  Disturbance disturbance = make_disturbance<NoLaw>({}, Stage::conditions);
   disturbance.command_delay_s = settings.get(key::latency);
   return disturbance;
 }

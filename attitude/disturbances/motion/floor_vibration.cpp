@@ -97,13 +97,8 @@ class RecordedVibration final : public TorqueLaw<RecordedVibration> {
     return inertial_torque(now, acceleration_m_s2);
   }
 
-  std::vector<Switch> switches(std::span<const Parameter>, double from_s,
-                               double to_s) const override {
-    std::vector<Switch> ends;
-    for (const double t_s : acceleration_lab_m_s2_.ends_within(from_s, to_s)) {
-      ends.push_back({t_s, -1});
-    }
-    return ends;
+  std::vector<Switch> switches(std::span<const Parameter>) const override {
+    return switches_at(acceleration_lab_m_s2_.ends_s());
   }
 
  private:

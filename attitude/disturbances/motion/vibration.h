@@ -44,9 +44,9 @@ T sinusoid(const T& time_s, const T& frequency_Hz, const T& phase_rad) {
 
 // The parameter `phase` [rad], or phase_deg; 0 if neither is given.
 inline PlacedParameters phase_parameter(const Settings& settings, ScalarKey phase) {
-  return settings.has(phase.name)
-             ? scalar_parameter(settings, phase)
-             : scalar_parameter_or(settings, ScalarKey("phase_rad", phase.first), 0.0);
+  return scalar_parameter(settings, settings.has(phase.name)
+                                        ? phase
+                                        : ScalarKey("phase_rad", 0.0, {}, "", phase.first));
 }
 
 }  // namespace photorque

@@ -83,10 +83,7 @@ class WheelImbalance final : public LawOf<WheelImbalance<is_constant>> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  const PlacedParameters axis = vector_parameter(settings, direction);
-  const Parameters& a = axis.parameters;
-  const Vec3 along(a[0].value, a[1].value, a[2].value);
-  if (!(along.norm() > 0.0)) throw settings.error(direction.name, "a zero vector", "a direction");
+  const PlacedParameters axis = direction_parameter(settings, direction);
   if (!settings.has(static_imbalance.name) && !settings.has(dynamic_imbalance.name)) {
     throw settings.error(static_imbalance.name, "nothing",
                          "this key, dynamic_imbalance_g_cm2 or both");
@@ -103,7 +100,8 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
                          phi_s = scalar_parameter(settings, static_phase),
                          phi_d = scalar_parameter(settings, dynamic_phase);
   constexpr double cosine_of_30_deg = 0.8660254037844386;
-  const bool is_along_x = std::abs(along.normalized().x()) > cosine_of_30_deg;
+  const bool is_along_x =
+      std::abs(vector_at(axis.parameters, 0).normalized().x()) > cosine_of_30_deg;
   const Vec3 reference = is_along_x ? Vec3::UnitY() : Vec3::UnitX();
   if (settings.has(speed.name)) {
     return make_disturbance<WheelImbalance<true>>(

@@ -5,36 +5,28 @@
 namespace photorque {
 namespace {
 
-struct VariableKeys {
-  const char* name;
-  const char* unit;
-  double reference_SI;  // value at which its powers are 1
-  double least_power;
-};
-constexpr VariableKeys shape_variables[] = {{"tilt", "deg", 0.1, 1.0},
-                                            {"rate", "rad_s", 0.1, 1.0},
-                                            {"charge", "Ah", 3600.0, 1.0},
-                                            {"command", "N_m", 1e-4, 1.0},
-                                            {"time", "s", 100.0, 0.0}};
 constexpr double most_order = 200.0;
 
 // Keys of all variables, one property after the other, so that documents show each property once.
 std::vector<Key> function_keys() {
   std::vector<Key> exponents, powers, knots, references, ranges;
-  for (const VariableKeys& variable : shape_variables) {
-    const std::string name = variable.name, unit = "_" + std::string(variable.unit);
+  for (const MotionVariable variable :
+       {MotionVariable::tilt, MotionVariable::rate, MotionVariable::charge, MotionVariable::command,
+        MotionVariable::time}) {
+    const std::string name = name_of(variable), unit = "_" + unit_of(variable);
+    const double least_power = variable == MotionVariable::time ? 0.0 : 1.0;
     exponents.push_back(UncertainNumberKey(name + "_exponent", Range::positive(),
                                            "exponent of a power of the variable; *or*",
                                            {.optional = true}));
     powers.push_back(NumbersKey(
-        name + "_powers", {variable.least_power, most_order},
+        name + "_powers", {least_power, most_order},
         "integer powers of the variable in rising order, one term each; *or*", {.optional = true}));
     knots.push_back(
         NumbersKey(name + "_knots" + unit, {},
                    "knots of a smooth table over the variable: at least 4, in rising order, one "
                    "coefficient for each; cubic in between",
                    {.optional = true}));
-    references.push_back(NumberKey(name + "_reference" + unit, variable.reference_SI,
+    references.push_back(NumberKey(name + "_reference" + unit, usual_reference(variable),
                                    Range::positive(), name + " at which the powers are 1"));
     ranges.push_back(NumbersKey(
         name + "_range" + unit, {},

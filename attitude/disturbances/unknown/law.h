@@ -42,16 +42,13 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
 
   // The cubics of a table over time meet at its knots, where their second derivative jumps. Steps
   // that end at the knots contain only polynomials and can be several times as long.
-  std::vector<Switch> switches(std::span<const Parameter>, double from_s,
-                               double to_s) const override {
-    std::vector<Switch> at;
+  std::vector<Switch> switches(std::span<const Parameter>) const override {
+    std::vector<double> knots_s;
     for (const MotionFunction& f : shape_.functions) {
       if (f.of != MotionVariable::time || f.form != FunctionForm::table) continue;
-      for (const double knot_s : f.table.knots()) {
-        if (knot_s > from_s && knot_s < to_s) at.push_back({knot_s});
-      }
+      knots_s.insert(knots_s.end(), f.table.knots().begin(), f.table.knots().end());
     }
-    return at;
+    return switches_at(knots_s);
   }
 
  private:

@@ -14,8 +14,7 @@ constexpr std::array axes_names = {"body", "lab",          "vertical", "lean",
 constexpr std::array axes_components = {3, 3, 1, 1, 1, 3, 1, 6};
 constexpr std::array variable_names = {"yaw", "tilt", "rate", "time", "charge", "command"};
 constexpr std::array variable_units = {"deg", "deg", "rad_s", "s", "Ah", "N_m"};
-// Default values of each variable at which its power is 1.
-constexpr std::array usual_reference = {1.0, 0.1, 0.1, 100.0, 3600.0, 1e-4};
+constexpr std::array usual_references = {1.0, 0.1, 0.1, 100.0, 3600.0, 1e-4};
 
 template <class Enum>
 size_t index(Enum e) {
@@ -77,7 +76,7 @@ MotionFunction read_function(const Settings& settings, MotionVariable variable,
   MotionFunction f;
   f.of = variable;
   f.form = form.form;
-  f.reference = usual_reference[index(variable)];
+  f.reference = usual_reference(variable);
   const std::string reference = with_unit(variable, "reference");
   switch (form.form) {
     case FunctionForm::harmonics:
@@ -181,6 +180,9 @@ std::string name_of(MotionVariable variable) {
 }
 std::string unit_of(MotionVariable variable) {
   return variable_units[index(variable)];
+}
+double usual_reference(MotionVariable variable) {
+  return usual_references[index(variable)];
 }
 
 size_t MotionFunction::terms() const {

@@ -104,6 +104,8 @@ std::string name_of(TorqueAxes axes);
 std::string name_of(MotionVariable variable);
 // Unit of the variable in files and reports: "deg", "rad_s", "s", "Ah", "N_m".
 std::string unit_of(MotionVariable variable);
+// Default value at which the powers of the variable are 1, SI.
+double usual_reference(MotionVariable variable);
 
 // Reads a shape from the keys of an experiment file (listed in empirical_torque.cpp). InputError
 // for keys that are missing, duplicate or inconsistent.
