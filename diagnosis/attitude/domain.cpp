@@ -32,7 +32,7 @@ FitSettings settings_of(const inference::Effort& effort) {
   settings.windows = effort.windows;
   settings.max_iterations = effort.max_iterations;
   settings.worth_chi2 = effort.worth_chi2;
-  settings.creep = effort.creep;
+  settings.min_relative_decrease = effort.min_relative_decrease;
   return settings;
 }
 

@@ -268,7 +268,7 @@ Diagnosis diagnose_light(const LightLab& lab, const NominalLight& nominal,
   options.limits.leaders.max_leaders = 4;
   options.limits.fitting.slow_blocks = 400;
   options.limits.fitting.trial_iterations = 10;
-  options.limits.fitting.patient_iterations = 20;
+  options.limits.fitting.leader_iterations = 20;
   options.limits.search.max_effects = 3;
   const std::string first = recordings.front().name;
   LightData data =

@@ -159,7 +159,7 @@ Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const
   const bool is_near =
       all[candidate].effect.how.scan == Scan::mode && start.gain > 0.5 * parent.fit.chi2;
   if (is_near) {
-    how.max_iterations = std::max(how.max_iterations, all.limits.fitting.patient_iterations);
+    how.max_iterations = std::max(how.max_iterations, all.limits.fitting.leader_iterations);
   } else if (parent.fit.chi2_per_sample() > all.limits.diverged_chi2_per_sample) {
     start_again(h, parent, runs);
     how.windows = all.limits.fitting.diverged_windows;
@@ -332,7 +332,7 @@ Trial within_physics(const Trial& trial, const Candidates& all,
   const auto leads_back = [&](const std::vector<double>& windows) {
     FitSettings settings;
     settings.windows = windows;
-    settings.max_iterations = all.limits.fitting.patient_iterations;
+    settings.max_iterations = all.limits.fitting.leader_iterations;
     result.fit = fit(start, runs, settings);
     return result.fit.chi2 < trial.fit.chi2 + all.limits.leaders.near_chi2;
   };
