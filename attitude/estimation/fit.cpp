@@ -38,14 +38,16 @@ inference::SumsOfRuns sums_at(const Hypothesis& at, const std::vector<Observatio
   return inference::evaluate(model, model.point_of(at), {}).sums;
 }
 
-std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs) {
+Prediction residuals_of(const Fit& fit, size_t run, const Observation& seen) {
   PredictionOptions options;
   options.keep_residuals = true;
+  const Dynamics dynamics(fit.best.model_of(run, seen));
+  return predict(dynamics, fit.best.runs[run].initial, seen, {}, options);
+}
+
+std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs) {
   std::vector<Prediction> all;
-  for (size_t run = 0; run < runs.size(); ++run) {
-    const Dynamics dynamics(fit.best.model_of(run, runs[run]));
-    all.push_back(predict(dynamics, fit.best.runs[run].initial, runs[run], {}, options));
-  }
+  for (size_t run = 0; run < runs.size(); ++run) all.push_back(residuals_of(fit, run, runs[run]));
   return all;
 }
 
@@ -232,7 +234,6 @@ double lowest_of(const DisturbanceKind* kind, const std::string& key) {
 Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Observation>& runs) {
   Hypothesis h;
   h.model = nominal.model;
-  std::vector<double> own;
   for (size_t d = 0; d < h.model.disturbances.size(); ++d) {
     const Disturbance& disturbance = h.model.disturbances[d];
     const DisturbanceKind* kind = find_kind(disturbance.kind);
@@ -247,10 +248,9 @@ Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Obs
         f.lowest = lowest_of(kind, parameter.key);
       }
       h.free.push_back(f);
-      if (per_run) own.push_back(parameter.value);
     }
   }
-  for (const Observation& seen : runs) h.runs.push_back({first_state(h.model, seen), own});
+  h.runs = starts_from_data(h, runs);
   return h;
 }
 

@@ -37,7 +37,9 @@ Hypothesis within_bounds(const Fit& fit, std::vector<Free> free,
 inference::SumsOfRuns sums_at(const Hypothesis& at, const std::vector<Observation>& runs,
                               const std::vector<Free>& extra, double tolerance = 1e-7);
 
-// All whitened residuals of a fit, one entry per run. NumericalError if it cannot be propagated.
+// All whitened residuals of a fit, of one run or one entry per run. NumericalError if it cannot be
+// propagated.
+Prediction residuals_of(const Fit& fit, size_t run, const Observation& seen);
 std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs);
 
 // Whitened residuals of each channel (recordings/columns.h) without gaps, one entry per run.

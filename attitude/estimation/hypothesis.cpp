@@ -7,6 +7,12 @@
 
 namespace photorque {
 
+std::vector<Free> Hypothesis::shared() const {
+  std::vector<Free> result = free;
+  std::erase_if(result, [](const Free& f) { return f.per_run; });
+  return result;
+}
+
 AttitudeModel Hypothesis::model_of(size_t run, const Observation& seen) const {
   AttitudeModel result = model;
   result.schedule = seen.schedule;

@@ -42,6 +42,8 @@ struct Hypothesis {
   const Parameter& parameter(const Free& f) const {
     return model.disturbances[f.disturbance].parameters[static_cast<size_t>(f.parameter)];
   }
+  // The free parameters that all runs share, in the order of the fit.
+  std::vector<Free> shared() const;
   // The model of one run, with the run's schedule and per-run parameters.
   AttitudeModel model_of(size_t run, const Observation& seen) const;
 };

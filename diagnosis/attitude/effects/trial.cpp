@@ -59,7 +59,7 @@ void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observati
 }
 
 // Whether an uncertain inertia differs from its nominal value by more than its sigma.
-bool inertia_is_bent(const Hypothesis& h, size_t nominal_disturbances) {
+bool inertia_is_shifted(const Hypothesis& h, size_t nominal_disturbances) {
   return std::any_of(h.free.begin(), h.free.end(), [&](const Free& f) {
     if (f.per_run || f.disturbance >= nominal_disturbances) return false;
     return changes_inertia(h.model.disturbances[f.disturbance]) &&
@@ -70,21 +70,21 @@ bool inertia_is_bent(const Hypothesis& h, size_t nominal_disturbances) {
 // Fits from `h` and, if its inertia is shifted, also from the stated values. The torque equation is
 // homogeneous, so a model that lacks an effect shifts its inertia first; an added effect then only
 // finds the local minimum near that inertia.
-Fit fit_unbent(const Hypothesis& h, size_t nominal_disturbances,
-               const std::vector<Observation>& runs, const FitSettings& settings,
-               const Thresholds& limits) {
-  Fit bent = fit(h, runs, settings);
-  if (!inertia_is_bent(h, nominal_disturbances)) return bent;
+Fit fit_also_from_stated(const Hypothesis& h, size_t nominal_disturbances,
+                         const std::vector<Observation>& runs, const inference::Options& options,
+                         const Thresholds& limits) {
+  Fit shifted = fit(h, runs, {options});
+  if (!inertia_is_shifted(h, nominal_disturbances)) return shifted;
   Hypothesis stated = h;
   for (const Free& f : h.free) {
     if (!f.per_run && f.disturbance < nominal_disturbances) stated.value(f) = f.mean;
   }
   stated.runs = starts_from_data(stated, runs);
-  FitSettings growing = settings;
+  inference::Options growing = options;
   growing.windows = limits.fitting.first_windows;
   growing.max_start_chi2 = inference::infinity;
-  const Fit straight = fit(stated, runs, growing);
-  return straight.chi2 < bent.chi2 ? straight : bent;
+  const Fit from_stated = fit(stated, runs, {growing});
+  return from_stated.chi2 < shifted.chi2 ? from_stated : shifted;
 }
 
 // Adds the fitted parameters of a candidate, whose disturbance has index `index` in the model.
@@ -149,12 +149,12 @@ Trial nominal_trial(const Fit& nominal, const Candidates& all) {
 }
 
 Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Start& start,
-             const std::vector<Observation>& runs, const FitSettings& settings) {
+             const std::vector<Observation>& runs, const inference::Options& options) {
   Trial trial;
   trial.candidates = parent.candidates;
   trial.disturbances = parent.disturbances;
   Hypothesis h = parent.fit.best;
-  FitSettings how = settings;
+  inference::Options how = options;
   // The scan of a mode that explains most of the residual starts near the solution.
   const bool is_near =
       all[candidate].effect.how.scan == Scan::mode && start.gain > 0.5 * parent.fit.chi2;
@@ -171,10 +171,10 @@ Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const
     // the frequency.
     Hypothesis as_scanned = h;
     std::erase_if(as_scanned.free, [](const Free& f) { return !f.per_run; });
-    h.runs = fit(as_scanned, runs, settings).best.runs;
+    h.runs = fit(as_scanned, runs, {options}).best.runs;
   }
-  trial.fit =
-      fit_unbent(h, h.model.disturbances.size() - trial.candidates.size(), runs, how, all.limits);
+  trial.fit = fit_also_from_stated(h, h.model.disturbances.size() - trial.candidates.size(), runs,
+                                   how, all.limits);
   judge(trial, all);
   return trial;
 }
@@ -256,7 +256,7 @@ void begin_as(const Trial& from, const Trial& trial, Hypothesis& h) {
 }
 
 Trial assembled(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
-                const std::vector<Observation>& runs, const FitSettings& settings) {
+                const std::vector<Observation>& runs, const inference::Options& options) {
   Hypothesis h = nominal_part(from);
   Trial trial;
   for (const inference::Member<Start>& member : members) {
@@ -271,16 +271,16 @@ Trial assembled(const Trial& from, const Candidates& all, const inference::Membe
     trial.disturbances.push_back(add_free(h, c, start, all.limits));
   }
   begin_as(from, trial, h);
-  trial.fit = fit_unbent(h, h.model.disturbances.size() - trial.candidates.size(), runs, settings,
-                         all.limits);
+  trial.fit = fit_also_from_stated(h, h.model.disturbances.size() - trial.candidates.size(), runs,
+                                   options, all.limits);
   return trial;
 }
 
 }  // namespace
 
 Trial assemble(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
-               const std::vector<Observation>& runs, const FitSettings& settings) {
-  FitSettings near = settings;
+               const std::vector<Observation>& runs, const inference::Options& options) {
+  inference::Options near = options;
   near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * from.fit.chi2,
                                  all.limits.diverged_chi2_per_sample * from.fit.samples);
   // If no candidate is removed, the first step of a fit from the trial equals the forecast and also
@@ -288,7 +288,7 @@ Trial assemble(const Trial& from, const Candidates& all, const inference::Member
   Trial trial = assembled(from, all, adds_to(from, members) ? without_forecast(members) : members,
                           runs, near);
   if (!std::isfinite(trial.fit.chi2)) {
-    FitSettings growing = settings;
+    inference::Options growing = options;
     growing.windows = growing_windows(all.limits, runs);
     trial = assembled(from, all, without_forecast(members), runs, growing);
   }
@@ -298,7 +298,7 @@ Trial assemble(const Trial& from, const Candidates& all, const inference::Member
 
 Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t candidate,
                const Disturbance& start, const std::vector<Observation>& runs,
-               const FitSettings& settings) {
+               const inference::Options& options) {
   Trial result = trial;
   const size_t index = trial.disturbances[which];
   result.candidates[which] = candidate;
@@ -306,7 +306,7 @@ Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t c
   h.model.disturbances[index] = start;
   std::erase_if(h.free, [&](const Free& f) { return f.disturbance == index; });
   free_parameters(h, all[candidate], index, all.limits);
-  result.fit = fit(h, runs, settings);
+  result.fit = fit(h, runs, {options});
   judge(result, all);
   return result;
 }
@@ -341,18 +341,18 @@ Trial within_physics(const Trial& trial, const Candidates& all,
 }
 
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
-            const std::vector<RunStart>& starts, const FitSettings& settings) {
+            const std::vector<RunStart>& starts, const inference::Options& options) {
   Trial result = trial;
   Hypothesis h = trial.fit.best;
   h.runs = starts;
   adapt_to_runs(h, runs);
-  result.fit = fit(h, runs, settings);
+  result.fit = fit(h, runs, {options});
   judge(result, all);
   return result;
 }
 
 Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
-                 const std::vector<Observation>& runs, const FitSettings& settings) {
+                 const std::vector<Observation>& runs, const inference::Options& options) {
   Trial from = trial;
   std::vector<Disturbance>& to = from.fit.best.model.disturbances;
   const std::vector<Disturbance>& source = other.fit.best.model.disturbances;
@@ -370,7 +370,7 @@ Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
     if (extra.size() != own.size()) extra = own;
   }
   // A fit from a start that is far worse than the trial would only return to it.
-  FitSettings near = settings;
+  inference::Options near = options;
   near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * trial.fit.chi2,
                                  all.limits.diverged_chi2_per_sample * trial.fit.samples);
   return refit(from, all, runs, starts, near);

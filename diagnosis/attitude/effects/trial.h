@@ -112,28 +112,28 @@ Trial within_physics(const Trial& trial, const Candidates& all,
 
 // Adds a candidate whose parameters start from `start`, and fits.
 Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Start& start,
-             const std::vector<Observation>& runs, const FitSettings& settings = {});
+             const std::vector<Observation>& runs, const inference::Options& options = {});
 
 // Replaces the `which`-th candidate by another that starts from `start`, and fits. Neither may have
 // states.
 Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t candidate,
                const Disturbance& start, const std::vector<Observation>& runs,
-               const FitSettings& settings = {});
+               const inference::Options& options = {});
 
 // Refits the trial to other or more runs: shared parameters start from the fitted ones.
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
-            const std::vector<RunStart>& starts, const FitSettings& settings = {});
+            const std::vector<RunStart>& starts, const inference::Options& options = {});
 
 // Refits the trial on the same runs, starting from the result of another trial: from its initial
 // conditions and its values of all common parameters. The fit of a long tumbling run may end in one
 // of many local minima; results of other trials give another start.
 Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
-                 const std::vector<Observation>& runs, const FitSettings& settings = {});
+                 const std::vector<Observation>& runs, const inference::Options& options = {});
 
 // The nominal model with exactly these members. The fit starts from the result of `from`, which may
 // have other candidates.
 Trial assemble(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
-               const std::vector<Observation>& runs, const FitSettings& settings = {});
+               const std::vector<Observation>& runs, const inference::Options& options = {});
 
 // The candidates of the trial with their fitted values.
 std::vector<inference::Term<Start>> terms_of(const Trial& trial);
