@@ -86,6 +86,16 @@ double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
   }
 }
 
+void drop_reading(int channel, size_t block, Observation& seen) {
+  if (channel >= vector_channels) {
+    seen.scalar[static_cast<size_t>(channel - vector_channels)].rows[block] = 0.0;
+  } else if (channel >= 3) {
+    seen.gyro_rows[block][channel - 3] = 0.0;
+  } else {
+    seen.attitude_rows[block] = 0.0;
+  }
+}
+
 int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,
                       std::vector<Observation>& runs) {
   int64_t dropped = 0;
@@ -98,12 +108,9 @@ int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds
         if (std::isfinite(residuals[run].residual[i][k])) rows.push_back(i);
       }
       for (const size_t n : inference::outliers(all[run][static_cast<size_t>(k)], limits)) {
-        // The components of an attitude are dropped together.
+        // An attitude may have been dropped for another component.
         if (k >= 3 || runs[run].attitude_rows[rows[n]] > 0.0) ++dropped;
-        if (k < 3) runs[run].attitude_rows[rows[n]] = 0.0;
-        if (k >= 3 && k < vector_channels) runs[run].gyro_rows[rows[n]][k - 3] = 0.0;
-        if (k < vector_channels) continue;
-        runs[run].scalar[static_cast<size_t>(k - vector_channels)].rows[rows[n]] = 0.0;
+        drop_reading(static_cast<int>(k), rows[n], runs[run]);
       }
     }
   }

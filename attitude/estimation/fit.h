@@ -50,6 +50,9 @@ std::vector<inference::ChannelResiduals> channels_of(const std::vector<Predictio
 double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
                     const Thresholds::Noise& limits);
 
+// Drops the reading of a channel in a block; those of an attitude are dropped together.
+void drop_reading(int channel, size_t block, Observation& seen);
+
 // Drops outliers, which are readings far from the prediction by the residuals of their neighbours.
 // Returns their number.
 int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,
