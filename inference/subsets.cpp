@@ -18,8 +18,7 @@ class Forecast {
       : problem_(problem), limits_(limits) {
     const Eigen::Index n = problem.gradient.size();
     // Scales to a unit diagonal: the units of the parameters differ by any number of orders.
-    unit_ = problem.information.diagonal().unaryExpr(
-        [](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
+    unit_ = inverse_roots(problem.information.diagonal(), 0.0);
     matrix_ = unit_.asDiagonal() * problem.information * unit_.asDiagonal();
     for (Eigen::Index i = 0; i < n; ++i) {
       const double raw = problem.before.size() == n ? problem.before[i] * unit_[i] * unit_[i] : 1.0;

@@ -14,8 +14,7 @@ namespace {
 // Parameters in `held` stay fixed.
 Eigen::VectorXd damped_step(const SumsOfRuns& sums, const Eigen::VectorXd& damped, double damping,
                             const std::vector<Eigen::Index>& held) {
-  const Eigen::VectorXd scale = sums.matrix.diagonal().cwiseSqrt().unaryExpr(
-      [](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
+  const Eigen::VectorXd scale = inverse_roots(sums.matrix.diagonal());
   ArrowMatrix scaled = sums.matrix.scaled(scale);
   for (Eigen::Index i = 0; i < scale.size(); ++i) scaled.add_to_diagonal(i, damping * damped[i]);
   Eigen::VectorXd right = scale.cwiseProduct(sums.gradient);
