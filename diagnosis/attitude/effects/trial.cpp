@@ -47,15 +47,22 @@ Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& conte
 
 namespace {
 
-// Resets a diverged fit to the nominal model and the first readings of each run, because its
-// parameters are useless as a start.
-void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observation>& runs) {
-  const auto& found = parent.disturbances;
+// Resets the parameters of the nominal disturbances, which come first, to their stated values, and
+// the runs to their first readings.
+void reset_to_stated(size_t nominal_disturbances, const std::vector<Observation>& runs,
+                     Hypothesis& h) {
   for (const Free& f : h.free) {
-    if (f.per_run) continue;
-    if (std::find(found.begin(), found.end(), f.disturbance) == found.end()) h.value(f) = f.mean;
+    if (!f.per_run && f.disturbance < nominal_disturbances) h.value(f) = f.mean;
   }
   h.runs = starts_from_data(h, runs);
+}
+
+// Options of a fit whose start is useless if its χ² is far above that of the trial behind it.
+inference::Options with_start_limit(inference::Options options, const Trial& trial,
+                                    const Thresholds& limits) {
+  options.max_start_chi2 = std::max(limits.fitting.max_start_growth * trial.fit.chi2,
+                                    limits.diverged_chi2_per_sample * trial.fit.samples);
+  return options;
 }
 
 // Whether an uncertain inertia differs from its nominal value by more than its sigma.
@@ -76,10 +83,7 @@ Fit fit_also_from_stated(const Hypothesis& h, size_t nominal_disturbances,
   Fit shifted = fit(h, runs, {options});
   if (!inertia_is_shifted(h, nominal_disturbances)) return shifted;
   Hypothesis stated = h;
-  for (const Free& f : h.free) {
-    if (!f.per_run && f.disturbance < nominal_disturbances) stated.value(f) = f.mean;
-  }
-  stated.runs = starts_from_data(stated, runs);
+  reset_to_stated(nominal_disturbances, runs, stated);
   inference::Options growing = options;
   growing.windows = limits.fitting.first_windows;
   growing.max_start_chi2 = inference::infinity;
@@ -130,17 +134,6 @@ Hypothesis nominal_part(const Trial& trial) {
 
 }  // namespace
 
-std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which) {
-  std::vector<Eigen::Index> result;
-  Eigen::Index shared = 0;
-  for (const Free& f : trial.fit.best.free) {
-    if (f.per_run) continue;
-    if (f.disturbance == trial.disturbances[which]) result.push_back(shared);
-    ++shared;
-  }
-  return result;
-}
-
 Trial nominal_trial(const Fit& nominal, const Candidates& all) {
   Trial trial;
   trial.fit = nominal;
@@ -161,7 +154,8 @@ Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const
   if (is_near) {
     how.max_iterations = std::max(how.max_iterations, all.limits.fitting.leader_iterations);
   } else if (parent.fit.chi2_per_sample() > all.limits.diverged_chi2_per_sample) {
-    start_again(h, parent, runs);
+    // The parameters of a diverged fit are useless as a start.
+    reset_to_stated(h.model.disturbances.size() - parent.candidates.size(), runs, h);
     how.windows = all.limits.fitting.diverged_windows;
   }
   trial.candidates.push_back(candidate);
@@ -280,13 +274,10 @@ Trial assembled(const Trial& from, const Candidates& all, const inference::Membe
 
 Trial assemble(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
                const std::vector<Observation>& runs, const inference::Options& options) {
-  inference::Options near = options;
-  near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * from.fit.chi2,
-                                 all.limits.diverged_chi2_per_sample * from.fit.samples);
   // If no candidate is removed, the first step of a fit from the trial equals the forecast and also
   // moves the initial conditions of each run. Otherwise the forecast is the nearest start.
   Trial trial = assembled(from, all, adds_to(from, members) ? without_forecast(members) : members,
-                          runs, near);
+                          runs, with_start_limit(options, from, all.limits));
   if (!std::isfinite(trial.fit.chi2)) {
     inference::Options growing = options;
     growing.windows = growing_windows(all.limits, runs);
@@ -370,10 +361,7 @@ Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
     if (extra.size() != own.size()) extra = own;
   }
   // A fit from a start that is far worse than the trial would only return to it.
-  inference::Options near = options;
-  near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * trial.fit.chi2,
-                                 all.limits.diverged_chi2_per_sample * trial.fit.samples);
-  return refit(from, all, runs, starts, near);
+  return refit(from, all, runs, starts, with_start_limit(options, trial, all.limits));
 }
 
 }  // namespace photorque

@@ -14,10 +14,7 @@
 
 namespace photorque {
 
-// The effects that may be missing: every kind of disturbance that a recording can reveal, with the
-// priors of its parameters, which are defined in the files of the kinds.
-
-// One parametrisation of a kind.
+// One parametrisation of a kind of disturbance; the file of the kind defines its priors.
 struct Effect {
   std::string kind;
   std::vector<EffectKey> keys;  // scaled to the platform
@@ -31,8 +28,6 @@ std::vector<Effect> catalogue(const DisturbanceContext& context);
 
 // The disturbance with every parameter at its start.
 Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& context);
-
-// Candidates for the residual, and fitted models with some of them.
 
 struct NominalModel;  // attitude/propagation/run.h
 
@@ -48,6 +43,10 @@ struct Candidate {
   std::vector<bool> searched;
 
   bool empirical() const { return !variable.empty(); }
+  // The disturbance with the expected size added to every strength.
+  Disturbance at_expected_size() const;
+  // The disturbance whose only strength is that of parameter `p`, at its expected size.
+  Disturbance with_strength_alone(size_t p) const;
   bool is_fitted(size_t p) const { return scale[p] > 0.0; }
   // Whether it is linear with unknown strength.
   bool is_strength(size_t p) const { return is_fitted(p) && !searched[p]; }
@@ -138,7 +137,9 @@ Trial assemble(const Trial& from, const Candidates& all, const inference::Member
 // The candidates of the trial with their fitted values.
 std::vector<inference::Term<Start>> terms_of(const Trial& trial);
 
-// Indices of a candidate's parameters among the shared ones of the fit.
-std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which);
+// The fitted parameters of the trial's `which`-th candidate.
+inline std::vector<SharedParameter> fitted_numbers(const Trial& trial, size_t which) {
+  return trial.fit.best.shared(trial.disturbances[which]);
+}
 
 }  // namespace photorque
