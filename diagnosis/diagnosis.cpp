@@ -43,7 +43,7 @@ Verdict verdict_of(inference::Finding finding) {
 
 std::string untested_names(const Holdout& holdout) {
   return printed(
-      "the held-out data do not test the names: the nominal model predicts it as well "
+      "the held-out data do not test the names: the nominal model predicts them as well "
       "(χ² per sample %.3g, with the names %.3g)",
       holdout.chi2_per_sample_before, holdout.chi2_per_sample_after);
 }

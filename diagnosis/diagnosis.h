@@ -52,7 +52,7 @@ struct FoundEffect {
   std::string table = {};
   // Initial states of a part that moves relative to the body, in the first recording, by the keys
   // of its kind.
-  std::vector<FittedParameter> begins = {};
+  std::vector<FittedParameter> initial_states = {};
 };
 
 // Result of one domain if motion and light are recorded together.

@@ -57,7 +57,7 @@ void add_kind(TomlDocument& document, TomlTable& table, const std::string& kind)
 }
 
 void add_effect(TomlDocument& document, const FoundEffect& effect, const std::string& table_name,
-                bool with_begin) {
+                bool with_initial_states) {
   if (!effect.explanation.empty()) document.comment(effect.explanation);
   document.comment("Probability " + printed("%.3f", effect.probability) + ".");
   for (const std::string& other : effect.indistinguishable_from) {
@@ -82,15 +82,15 @@ void add_effect(TomlDocument& document, const FoundEffect& effect, const std::st
   } else {
     add_values(document, table, effect.parameters);
   }
-  if (with_begin) add_values(document, table, effect.begins);
+  if (with_initial_states) add_values(document, table, effect.initial_states);
 }
 
-void add_unnamed(TomlDocument& document, const FoundEffect& effect, bool with_begin) {
+void add_unnamed(TomlDocument& document, const FoundEffect& effect, bool with_initial_states) {
   document.comment("Fitted beside, without being proved: " + effect.kind + ".");
   TomlTable& table = document.append("disturbance");
   add_kind(document, table, effect.kind);
   add_values(document, table, effect.parameters);
-  if (with_begin) add_values(document, table, effect.begins);
+  if (with_initial_states) add_values(document, table, effect.initial_states);
 }
 
 void add_empirical(TomlDocument& document, const EmpiricalTorque& torque) {

@@ -1,5 +1,6 @@
 #include "diagnosis/json.h"
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/text/format.h"
@@ -93,11 +94,11 @@ Json empirical_json(const EmpiricalTorque& torque) {
 }
 
 Json holdout_json(const Holdout& holdout) {
-  const auto& predictive = holdout.predictive;
-  return {{"predictive_chi2_per_sample", predictive ? Json(predictive->chi2_per_sample) : Json()},
-          {"expected_chi2_per_sample",
-           predictive ? Json(predictive->expected_chi2_per_sample) : Json()},
-          {"predictive_sigma", predictive ? Json(predictive->sigma) : Json()},
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // null
+  const auto predictive = holdout.predictive.value_or(inference::Predictive{unknown, unknown});
+  return {{"predictive_chi2_per_sample", predictive.chi2_per_sample},
+          {"expected_chi2_per_sample", predictive.expected_chi2_per_sample},
+          {"predictive_sigma", predictive.sigma},
           {"explained_fraction", holdout.explained_fraction},
           {"rms_before", holdout.rms_before},
           {"rms_after", holdout.rms_after},

@@ -14,11 +14,7 @@ class Judge {
         const Checks& checks, const Thresholds::Decision& limits)
       : trials_(trials), all_(all), checks_(checks), limits_(limits) {}
 
-  bool is_empirical(size_t trial) const {
-    const std::vector<size_t>& candidates = trials_[trial].candidates;
-    return std::any_of(candidates.begin(), candidates.end(),
-                       [&](size_t c) { return all_[c].is_empirical; });
-  }
+  bool is_empirical(size_t trial) const { return has_empirical(trials_[trial].candidates, all_); }
 
   bool is_significant(size_t trial) const {
     return inference::is_significant(trials_[trial], limits_) &&
@@ -72,11 +68,12 @@ class Judge {
     return trial;
   }
 
-  // Whether the held-out χ² of a trial is clearly below that of the nominal model.
-  bool is_tested(size_t trial) const {
+  // Whether the held-out χ² of a trial is below this fraction of that of the nominal model; true
+  // where it is not known.
+  bool lowers_held_out(size_t trial, double fraction) const {
     const auto &before = trials_.front().holdout_chi2_per_sample,
                &after = trials_[trial].holdout_chi2_per_sample;
-    return !before || !after || *after < checks_.limits.max_untested_fraction * *before;
+    return !before || !after || *after < fraction * *before;
   }
 
   // Candidates at other places that explain as much as the one at `which`.
@@ -125,13 +122,6 @@ class Judge {
       }
     }
     return result;
-  }
-
-  // Whether the held-out χ² is far below that of the nominal model; true where it is not known.
-  bool predicts_far_better(size_t trial) const {
-    const auto &before = trials_.front().holdout_chi2_per_sample,
-               &after = trials_[trial].holdout_chi2_per_sample;
-    return !before || !after || *after < limits_.max_held_out_fraction * *before;
   }
 
   bool has_names_of(size_t part, size_t whole) const {
@@ -305,7 +295,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
                                  : "the best known physics does not predict the held-out data";
     d.chosen = only_empirical ? empirical : named;
     const bool law_does = only_empirical && judge.predicts(empirical) &&
-                          judge.predicts_far_better(empirical) &&
+                          judge.lowers_held_out(empirical, limits.max_held_out_fraction) &&
                           checks.excess_sigma(empirical) < limits.max_excess_sigma;
     d.leaves_more = !law_does;
     if (law_does) d.beside_law = judge.indispensable(empirical);
@@ -371,7 +361,8 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     d.confidence = probability_of_all(d.chosen);
   }
   d.finding = Finding::named;
-  d.held_out_tests_names = judge.is_tested(d.chosen);  // gate (e)
+  // Gate (e).
+  d.held_out_tests_names = judge.lowers_held_out(d.chosen, checks.limits.max_untested_fraction);
   for (size_t which = 0; which < trials[d.chosen].candidates.size(); ++which) {
     Name name{trials[d.chosen].candidates[which]};
     name.probability = probability_of(d.probability, [&](size_t i) {

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <concepts>
 #include <cstdint>
-#include <limits>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -80,15 +80,8 @@ struct Explanation {
   std::vector<double> largest_component = {};
 };
 
-// Convergence options. The first `windows` fractions of each run are fitted in turn, each with at
-// most `max_iterations`. A fit to whole runs stops early if it cannot fall below `worth_chi2`. It
-// also stops if it fits badly and χ² falls by less than the fraction `creep` per step.
-struct Effort {
-  std::vector<double> windows = {1.0};
-  int max_iterations = 25;
-  double worth_chi2 = std::numeric_limits<double>::infinity();
-  double creep = 0.0;
-};
+// Convergence options of the fit of a trial.
+using Effort = Options;
 
 // A candidate with its initial values.
 template <class Start>
@@ -105,6 +98,23 @@ struct Member {
 };
 template <class Start>
 using Members = std::vector<Member<Start>>;
+
+// The terms as members of a set, except the one at index `left_out`.
+template <class Start>
+Members<Start> members_of(const std::vector<Term<Start>>& terms, size_t left_out = SIZE_MAX) {
+  Members<Start> members;
+  for (size_t i = 0; i < terms.size(); ++i) {
+    if (i != left_out) members.push_back({terms[i]});
+  }
+  return members;
+}
+
+template <class Start>
+std::vector<size_t> candidates_of(const Members<Start>& members) {
+  std::vector<size_t> candidates;
+  for (const Member<Start>& m : members) candidates.push_back(m.term.candidate);
+  return candidates;
+}
 
 // A fit as seen by the search: χ² with priors, number of residuals, and data χ² per residual.
 template <class F>
@@ -183,9 +193,19 @@ inline bool same_candidates(const std::vector<size_t>& a, const std::vector<size
   return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
 }
 
-// Whether any of these candidates has a place.
+// Whether `all` contains every one of `some`.
+inline bool includes(const std::vector<size_t>& all, const std::vector<size_t>& some) {
+  return std::ranges::all_of(some,
+                             [&](size_t c) { return std::ranges::find(all, c) != all.end(); });
+}
+
+// Whether any of these candidates has a place, or is empirical.
 inline bool has_place(const std::vector<size_t>& among, const std::vector<CandidateTraits>& all) {
-  return std::any_of(among.begin(), among.end(), [&](size_t c) { return all[c].has_place; });
+  return std::ranges::any_of(among, [&](size_t c) { return all[c].has_place; });
+}
+inline bool has_empirical(const std::vector<size_t>& among,
+                          const std::vector<CandidateTraits>& all) {
+  return std::ranges::any_of(among, [&](size_t c) { return all[c].is_empirical; });
 }
 
 // Whether `among` contains the name of `candidate` as often as allowed.
@@ -195,6 +215,17 @@ inline bool acts_already(const std::vector<size_t>& among, size_t candidate,
     return all[other].name == all[candidate].name;
   });
   return static_cast<size_t>(count) >= all[candidate].most;
+}
+
+// The candidates that may be added to `among` and whose traits satisfy the condition.
+template <class Condition>
+std::vector<size_t> addable(const std::vector<size_t>& among,
+                            const std::vector<CandidateTraits>& all, const Condition& condition) {
+  std::vector<size_t> candidates;
+  for (size_t c = 0; c < all.size(); ++c) {
+    if (std::invoke(condition, all[c]) && !acts_already(among, c, all)) candidates.push_back(c);
+  }
+  return candidates;
 }
 
 // Whether the prediction of a trial has diverged, so that its derivatives are useless.

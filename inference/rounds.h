@@ -2,14 +2,12 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 
 #include "inference/subsets.h"
 #include "inference/trials.h"
 
 namespace photorque::inference {
-
-template <Domain D>
-using Terms = std::vector<Term<typename D::Start>>;
 
 // Each round linearises the problem about one trial, predicts the gain of every set of candidates
 // (subsets.h), and fits the best few. The next round starts from the best trial. When no set gains
@@ -133,8 +131,7 @@ class Rounds {
   }
 
   bool has_empirical(const Trial& at) const {
-    return std::any_of(at.candidates.begin(), at.candidates.end(),
-                       [&](size_t c) { return domain_.candidates()[c].is_empirical; });
+    return inference::has_empirical(at.candidates, domain_.candidates());
   }
 
   static bool has_empirical(const Subset& s, const LinearProblem& problem) {
@@ -148,12 +145,8 @@ class Rounds {
     const Runs averages = slow_runs(domain_, at, set_);
     while (at.candidates.size() > 1) {
       const Terms<D> terms = domain_.terms_of(at);
-      std::vector<Members<typename D::Start>> fewer(terms.size());
-      for (size_t left_out = 0; left_out < terms.size(); ++left_out) {
-        for (size_t i = 0; i < terms.size(); ++i) {
-          if (i != left_out) fewer[left_out].push_back({terms[i]});
-        }
-      }
+      std::vector<Members<typename D::Start>> fewer;
+      for (size_t i = 0; i < terms.size(); ++i) fewer.push_back(members_of(terms, i));
       std::vector<Trial> found = fitted(at, fewer, averages);
       const Trial& best = found.front();
       const bool is_better = best.log_evidence > at.log_evidence && best.objection.empty();
@@ -173,20 +166,15 @@ class Rounds {
 
   // Candidates with linear strengths that need no scan at the full sampling rate.
   Terms<D> slow_terms(const Trial& at, const Runs& averages) const {
-    const std::vector<CandidateTraits>& all = domain_.candidates();
+    const auto slow_and = [&](bool is_linear) {
+      return addable(at.candidates, domain_.candidates(), [&](const CandidateTraits& c) {
+        return !c.is_fast && c.has_strength && c.is_linear == is_linear;
+      });
+    };
     Terms<D> terms;
-    std::vector<size_t> to_scan;
-    for (size_t c = 0; c < all.size(); ++c) {
-      if (all[c].is_fast || !all[c].has_strength || acts_already(at.candidates, c, all)) continue;
-      if (all[c].is_linear) {
-        terms.push_back({c, domain_.start_of(c)});
-      } else {
-        to_scan.push_back(c);
-      }
-    }
-    const auto starts = domain_.starts(at, to_scan, set_.runs, averages, threads_);
-    for (size_t i = 0; i < to_scan.size(); ++i) {
-      for (const auto& start : starts[i]) terms.push_back({to_scan[i], start});
+    for (const size_t c : slow_and(true)) terms.push_back({c, domain_.start_of(c)});
+    for (auto& term : terms_to_add(domain_, at, slow_and(false), set_.runs, averages, threads_)) {
+      terms.push_back(std::move(term));
     }
     return terms;
   }
@@ -217,7 +205,7 @@ class Rounds {
       const bool is_known = has_empirical(at) && !has_empirical(s, problem) &&
                             known_sets < limits_.search.max_known_fits_of_round;
       if (!is_leader && !is_single && !is_known) continue;
-      Members<typename D::Start> members = members_of(s, problem, terms, is_kept);
+      Members<typename D::Start> members = predicted_members(s, problem, terms, is_kept);
       if (members.empty()) continue;
       // A trial with more names needs a predicted gain.
       if (s.log_evidence < of_trial && is_enlarged(candidates_of(members), at)) continue;
@@ -258,9 +246,7 @@ class Rounds {
   // candidates, because some single candidates are always fitted for comparison.
   static bool is_enlarged(const std::vector<size_t>& candidates, const Trial& at) {
     return !at.candidates.empty() && candidates.size() > at.candidates.size() &&
-           std::all_of(at.candidates.begin(), at.candidates.end(), [&](size_t c) {
-             return std::find(candidates.begin(), candidates.end(), c) != candidates.end();
-           });
+           includes(candidates, at.candidates);
   }
 
   // Minimum gain of a single candidate that is fitted for comparison.
@@ -274,9 +260,10 @@ class Rounds {
     return std::max(limits_.scoring.min_gain + by_chance, limits_.scoring.min_fraction * best);
   }
 
-  Members<typename D::Start> members_of(const Subset& s, const LinearProblem& problem,
-                                        const Terms<D>& terms,
-                                        const std::vector<bool>& is_kept) const {
+  // The kept terms, and those of the subset with their predicted strengths.
+  Members<typename D::Start> predicted_members(const Subset& s, const LinearProblem& problem,
+                                               const Terms<D>& terms,
+                                               const std::vector<bool>& is_kept) const {
     Members<typename D::Start> members;
     for (size_t i = 0; i < is_kept.size(); ++i) {
       if (is_kept[i]) members.push_back({terms[i], {}});
@@ -288,12 +275,6 @@ class Rounds {
       first += group.count();
     }
     return members;
-  }
-
-  static std::vector<size_t> candidates_of(const Members<typename D::Start>& members) {
-    std::vector<size_t> candidates;
-    for (const auto& m : members) candidates.push_back(m.term.candidate);
-    return candidates;
   }
 
   // Whether the set has been fitted with about the log evidence that is `expected`. If its evidence
@@ -312,10 +293,8 @@ class Rounds {
   bool is_refused(const Members<typename D::Start>& members, double expected) const {
     const std::vector<size_t> candidates = candidates_of(members);
     return std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) {
-      const bool is_part = std::all_of(t.candidates.begin(), t.candidates.end(), [&](size_t c) {
-        return std::find(candidates.begin(), candidates.end(), c) != candidates.end();
-      });
-      return !t.objection.empty() && is_part && t.candidates.size() < candidates.size() &&
+      return !t.objection.empty() && includes(candidates, t.candidates) &&
+             t.candidates.size() < candidates.size() &&
              expected < t.log_evidence + limits_.decision.min_log_odds;
     });
   }
@@ -350,22 +329,14 @@ class Rounds {
 
   // Fits candidates that are too nonlinear for a forecast, one at a time.
   std::vector<Trial> each_alone(const Trial& at) const {
-    const std::vector<CandidateTraits>& all = domain_.candidates();
-    std::vector<size_t> bent;
-    for (size_t c = 0; c < all.size(); ++c) {
-      if (all[c].is_fitted_first && !acts_already(at.candidates, c, all)) bent.push_back(c);
-    }
-    if (bent.empty() || at.candidates.size() >= max_effects_) return {};
+    const std::vector<size_t> nonlinear =
+        addable(at.candidates, domain_.candidates(), &CandidateTraits::is_fitted_first);
+    if (nonlinear.empty() || at.candidates.size() >= max_effects_) return {};
     const Runs averages = slow_runs(domain_, at, set_);
-    const auto starts = domain_.starts(at, bent, set_.runs, averages, threads_);
-    Members<typename D::Start> own;
-    for (const auto& term : domain_.terms_of(at)) own.push_back({term});
     std::vector<Members<typename D::Start>> chosen;
-    for (size_t i = 0; i < bent.size(); ++i) {
-      for (const auto& start : starts[i]) {
-        chosen.push_back(own);
-        chosen.back().push_back({{bent[i], start}});
-      }
+    for (const auto& term : terms_to_add(domain_, at, nonlinear, set_.runs, averages, threads_)) {
+      chosen.push_back(members_of(domain_.terms_of(at)));
+      chosen.back().push_back({term});
     }
     return fitted(at, chosen, averages);
   }
@@ -373,13 +344,12 @@ class Rounds {
   // Adds candidates without parameters. They have no strength, so their gain cannot be forecast.
   std::vector<Trial> switched_on(const Trial& at) const {
     if (at.candidates.size() >= max_effects_) return {};
-    const std::vector<CandidateTraits>& all = domain_.candidates();
-    std::vector<Task<D>> tasks;
-    for (size_t c = 0; c < all.size(); ++c) {
-      if (all[c].parameters > 0 || acts_already(at.candidates, c, all)) continue;
-      tasks.push_back({c, domain_.start_of(c)});
+    Terms<D> terms;
+    for (const size_t c : addable(at.candidates, domain_.candidates(),
+                                  [](const CandidateTraits& c) { return c.parameters == 0; })) {
+      terms.push_back({c, domain_.start_of(c)});
     }
-    return extend_by_tasks(domain_, at, tasks, set_.runs, threads_);
+    return extend_by_each(domain_, at, terms, set_.runs, threads_);
   }
 
   // Removes each effect with an instant or a place, together with empirical laws that may
@@ -395,19 +365,15 @@ class Rounds {
     for (const Term<typename D::Start>& term : terms) {
       const CandidateTraits& traits = all[term.candidate];
       if (traits.is_linear || traits.is_fast || traits.is_empirical) continue;
-      Members<typename D::Start> rest;
-      for (const Term<typename D::Start>& other : terms) {
-        const bool stays = other.candidate != term.candidate && !all[other.candidate].is_empirical;
-        if (stays) rest.push_back({other});
-      }
+      Members<typename D::Start> rest = members_of(terms);
+      std::erase_if(rest, [&](const auto& other) {
+        return other.term.candidate == term.candidate || all[other.term.candidate].is_empirical;
+      });
       const Effort effort{.max_iterations = limits_.fitting.trial_iterations};
       const Trial parent = domain_.assemble(at, rest, set_.runs, effort);
-      std::vector<Task<D>> tasks;
-      const auto starts = domain_.starts(parent, {term.candidate}, set_.runs, averages, threads_);
-      for (const auto& start : starts.front()) {
-        tasks.push_back({term.candidate, start});
-      }
-      for (Trial& t : extend_by_tasks(domain_, parent, tasks, set_.runs, threads_)) {
+      const Terms<D> places =
+          terms_to_add(domain_, parent, {term.candidate}, set_.runs, averages, threads_);
+      for (Trial& t : extend_by_each(domain_, parent, places, set_.runs, threads_)) {
         if (!same_candidates(t.candidates, at.candidates) || t.log_evidence > at.log_evidence) {
           found.push_back(std::move(t));
         }
@@ -419,32 +385,26 @@ class Rounds {
   // Adds candidates that vary faster than averages of the readings resolve.
   std::vector<Trial> scanned(const Trial& at) const {
     if (at.candidates.size() >= max_effects_) return {};
-    const Runs averages = slow_runs(domain_, at, set_);
-    const std::vector<CandidateTraits>& all = domain_.candidates();
-    std::vector<size_t> others;
-    for (size_t c = 0; c < all.size(); ++c) {
-      if (!all[c].is_fast && (all[c].has_strength || all[c].parameters == 0)) continue;
-      if (!acts_already(at.candidates, c, all)) others.push_back(c);
-    }
-    const auto starts = domain_.starts(at, others, set_.runs, averages, threads_);
+    const std::vector<size_t> fast =
+        addable(at.candidates, domain_.candidates(), [](const CandidateTraits& c) {
+          return c.is_fast || (!c.has_strength && c.parameters > 0);
+        });
+    const Terms<D> terms =
+        terms_to_add(domain_, at, fast, set_.runs, slow_runs(domain_, at, set_), threads_);
     double best = 0.0;
-    for (const auto& some : starts) {
-      for (const auto& start : some) {
-        if (std::isfinite(start.gain)) best = std::max(best, start.gain);
+    std::map<size_t, double> best_of;  // by candidate
+    for (const auto& [candidate, start] : terms) {
+      if (std::isfinite(start.gain)) best = std::max(best, start.gain);
+      best_of[candidate] = std::max(best_of[candidate], start.gain);
+    }
+    Terms<D> promising;
+    for (const auto& term : terms) {
+      const bool is_best = !(term.start.gain < best_of[term.candidate]);
+      if (is_best || term.start.gain >= limits_.scoring.min_start_fraction * best) {
+        promising.push_back(term);
       }
     }
-    std::vector<Task<D>> tasks;
-    for (size_t i = 0; i < others.size(); ++i) {
-      double most = 0.0;
-      for (const auto& start : starts[i]) most = std::max(most, start.gain);
-      for (const auto& start : starts[i]) {
-        const bool is_best = !(start.gain < most);
-        if (is_best || start.gain >= limits_.scoring.min_start_fraction * best) {
-          tasks.push_back({others[i], start});
-        }
-      }
-    }
-    return extend_by_tasks(domain_, at, tasks, set_.runs, threads_);
+    return extend_by_each(domain_, at, promising, set_.runs, threads_);
   }
 
   void keep(Trial trial) {
@@ -456,11 +416,6 @@ class Rounds {
       return;
     }
     trials_.push_back(std::move(trial));
-  }
-
-  static bool includes(const std::vector<size_t>& all, const std::vector<size_t>& some) {
-    return std::ranges::all_of(some,
-                               [&](size_t c) { return std::ranges::find(all, c) != all.end(); });
   }
 
   // The allowed trial of largest evidence that contains the candidates.

@@ -83,16 +83,13 @@ class Search {
   // replace in whole runs. `found` is sorted by evidence.
   size_t put_refits_first(std::vector<Trial>& found) const {
     const size_t most = std::min(limits_.search.max_refits_of_pieces, found.size());
-    const auto has_law = [&](const Trial& t) {
-      return std::any_of(t.candidates.begin(), t.candidates.end(),
-                         [&](size_t c) { return domain_.candidates()[c].is_empirical; });
-    };
     const Trial best = found.front();
     size_t with_law = 0, chosen = 0;
     std::vector<bool> is_chosen(found.size(), false);
     for (size_t i = 0; i < found.size() && chosen < most; ++i) {
       if (!is_near(found[i], best, limits_) || !found[i].objection.empty()) continue;
-      if (has_law(found[i]) && ++with_law > most / 2) continue;
+      const bool has_law = has_empirical(found[i].candidates, domain_.candidates());
+      if (has_law && ++with_law > most / 2) continue;
       is_chosen[i] = true;
       ++chosen;
     }

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "inference/estimator/covariance.h"
@@ -17,8 +18,7 @@ class Forecast {
       : problem_(problem), limits_(limits) {
     const Eigen::Index n = problem.gradient.size();
     // Scales to a unit diagonal: the units of the parameters differ by any number of orders.
-    unit_ = problem.information.diagonal().unaryExpr(
-        [](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
+    unit_ = inverse_roots(problem.information.diagonal(), 0.0);
     matrix_ = unit_.asDiagonal() * problem.information * unit_.asDiagonal();
     for (Eigen::Index i = 0; i < n; ++i) {
       const double raw = problem.before.size() == n ? problem.before[i] * unit_[i] * unit_[i] : 1.0;
@@ -46,7 +46,8 @@ class Forecast {
     return gain_without_ + g.dot(matrix_(at, at).llt().solve(g));
   }
 
-  // Forecast for the groups, computed from zero strengths: θ_S = H_SS⁻¹ (g + H θ)_S.
+  // Forecast for the groups, computed from zero strengths: θ_S = H_SS⁻¹ (g + H θ)_S. The evidence
+  // is −∞ if physics forbids the strengths.
   Subset subset(const std::vector<size_t>& groups) const {
     Subset result{groups, gain_without_, 0.0, {}};
     const std::vector<Eigen::Index> at = places(groups);
@@ -64,6 +65,7 @@ class Forecast {
       result.log_evidence += 0.5 * log_determinant(covariance);
     }
     Eigen::Index k = 0;
+    bool is_forbidden = false;
     for (size_t owner = 0; owner < groups.size(); ++owner) {
       const StrengthGroup& group = problem_.groups[groups[owner]];
       result.log_evidence += group.is_empirical ? limits_.evidence.log_prior_empirical
@@ -74,10 +76,8 @@ class Forecast {
         strengths.value.push_back(result.value[k]);
         strengths.scale.push_back(group.scale[p]);
         const double beyond = limits_.objection.bound_sigma * std::sqrt(covariance(k, k));
-        if (result.value[k] < group.lowest[p] - beyond ||
-            result.value[k] > group.highest[p] + beyond) {
-          forbidden_.insert(groups);
-        }
+        is_forbidden = is_forbidden || result.value[k] < group.lowest[p] - beyond ||
+                       result.value[k] > group.highest[p] + beyond;
       }
     }
     result.log_evidence += 0.5 * result.gain;
@@ -85,10 +85,9 @@ class Forecast {
       result.log_evidence +=
           log_strength_evidence(strengths, covariance, groups.size(), limits_.evidence);
     }
+    if (is_forbidden) result.log_evidence = -std::numeric_limits<double>::infinity();
     return result;
   }
-
-  bool is_forbidden(const std::vector<size_t>& groups) const { return forbidden_.contains(groups); }
 
   size_t parameters(const std::vector<size_t>& groups) const { return places(groups).size(); }
 
@@ -133,7 +132,6 @@ class Forecast {
   Eigen::VectorXd unit_, gradient_, value_, gradient_without_;
   Eigen::MatrixXd matrix_;
   double gain_without_ = 0.0;
-  mutable std::set<std::vector<size_t>> forbidden_;
 };
 
 // Adds one group to each set of the beam and ranks the distinct results by gain minus the cost of
@@ -157,8 +155,7 @@ std::vector<std::vector<size_t>> larger(const Forecast& forecast, const LinearPr
       if (std::isfinite(worth)) ranked.emplace_back(worth, std::move(set));
     }
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::ranges::stable_sort(ranked, std::ranges::greater(), [](const auto& r) { return r.first; });
   std::vector<std::vector<size_t>> result;
   for (auto& [worth, set] : ranked) result.push_back(std::move(set));
   return result;
@@ -192,12 +189,8 @@ std::vector<Subset> best_subsets(const LinearProblem& problem, size_t max_size,
     for (const std::vector<size_t>& set : kept) found.push_back(forecast.subset(set));
     beam = size == 1 ? std::move(sets) : std::move(kept);
   }
-  std::erase_if(found, [&](const Subset& s) {
-    return forecast.is_forbidden(s.groups) || !std::isfinite(s.log_evidence);
-  });
-  std::stable_sort(found.begin(), found.end(), [](const Subset& a, const Subset& b) {
-    return a.log_evidence > b.log_evidence;
-  });
+  std::erase_if(found, [](const Subset& s) { return !std::isfinite(s.log_evidence); });
+  std::ranges::stable_sort(found, std::ranges::greater(), &Subset::log_evidence);
   return found;
 }
 

@@ -9,11 +9,10 @@
 
 namespace photorque::inference {
 
-// The best of many trials are fitted with more iterations than all of them could be.
-
 // Options to iterate until convergence. If a fit stops early, every extension of it seems to gain.
 inline Effort until_convergence(const Thresholds& limits) {
-  return {.max_iterations = limits.fitting.patient_iterations, .creep = limits.fitting.creep};
+  return {.max_iterations = limits.fitting.leader_iterations,
+          .min_relative_decrease = limits.fitting.min_relative_decrease};
 }
 
 // Stops the fit when it cannot come near the best trial on the same runs.
@@ -76,10 +75,10 @@ template <Domain D>
 typename D::Trial with_instruments(const D& domain, const typename D::Trial& trial,
                                    const typename D::Trial& base,
                                    const std::vector<typename D::Run>& runs) {
-  Members<typename D::Start> members;
-  for (const auto& term : domain.terms_of(trial)) {
-    if (domain.candidates()[term.candidate].is_of_instrument) members.push_back({term});
-  }
+  Members<typename D::Start> members = members_of(domain.terms_of(trial));
+  std::erase_if(members, [&](const auto& member) {
+    return !domain.candidates()[member.term.candidate].is_of_instrument;
+  });
   if (members.empty()) return base;
   const Effort effort{.max_iterations = domain.limits().fitting.trial_iterations};
   return domain.assemble(trial, members, runs, effort);
@@ -134,24 +133,35 @@ std::vector<Trial> deduplicated(std::vector<Trial> trials) {
   return kept;
 }
 
-// A fit to be computed.
 template <Domain D>
-struct Task {
-  size_t candidate;
-  typename D::Start start;
-};
+using Terms = std::vector<Term<typename D::Start>>;
 
-// Fits all tasks to `runs`; of several starts of a candidate, the best fit is returned.
+// All starts of the candidates when added to the parent; `averages` are averages of the runs.
 template <Domain D>
-std::vector<typename D::Trial> extend_by_tasks(const D& domain, const typename D::Trial& parent,
-                                               const std::vector<Task<D>>& tasks,
-                                               const std::vector<typename D::Run>& runs,
-                                               int threads) {
+Terms<D> terms_to_add(const D& domain, const typename D::Trial& parent,
+                      const std::vector<size_t>& candidates,
+                      const std::vector<typename D::Run>& runs,
+                      const std::vector<typename D::Run>& averages, int threads) {
+  const auto starts = domain.starts(parent, candidates, runs, averages, threads);
+  Terms<D> terms;
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    for (const auto& start : starts[i]) terms.push_back({candidates[i], start});
+  }
+  return terms;
+}
+
+// Adds each term to the parent and fits; of several starts of a candidate, the best fit is
+// returned.
+template <Domain D>
+std::vector<typename D::Trial> extend_by_each(const D& domain, const typename D::Trial& parent,
+                                              const Terms<D>& terms,
+                                              const std::vector<typename D::Run>& runs,
+                                              int threads) {
   using Trial = typename D::Trial;
   const Effort effort{.max_iterations = domain.limits().fitting.trial_iterations};
-  std::vector<Trial> trials(tasks.size());
-  parallel_for(tasks.size(), threads, [&](size_t i) {
-    trials[i] = domain.extend(parent, tasks[i].candidate, tasks[i].start, runs, effort);
+  std::vector<Trial> trials(terms.size());
+  parallel_for(terms.size(), threads, [&](size_t i) {
+    trials[i] = domain.extend(parent, terms[i].candidate, terms[i].start, runs, effort);
   });
   std::vector<Trial> best;
   for (Trial& trial : trials) {

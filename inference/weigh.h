@@ -150,7 +150,7 @@ class Weighing {
       Trial& train = trials_[leaders_[k].at];
       const bool is_lower = joint.fit.chi2 < train.fit.chi2 - limits_.leaders.worth_a_fit;
       if (!is_lower && !is_elsewhere(train, joint)) return;
-      Trial again = assembled(joint, domain_.terms_of(joint), until_convergence(limits_));
+      Trial again = on_train_runs(joint, until_convergence(limits_));
       if (!(again.fit.chi2 < train.fit.chi2 + (is_lower ? 0.0 : as_good_chi2))) return;
       predict_held(again);
       if (!is_lower && !(again.holdout_chi2_per_sample < train.holdout_chi2_per_sample)) return;
@@ -226,9 +226,8 @@ class Weighing {
     if (has_diverged(from.joint, limits_) || !std::isfinite(from.joint.fit.chi2)) return;
     Rounds<D> rounds(domain_, {all_runs_}, nominal().joint, limits_.search.max_effects, threads_);
     // If the start contains an empirical law, the train runs have been scanned for fast effects.
-    const bool is_law = std::any_of(from.joint.candidates.begin(), from.joint.candidates.end(),
-                                    [&](size_t c) { return domain_.candidates()[c].is_empirical; });
-    std::vector<Trial> found = rounds.run(from.joint, !is_law);
+    const bool has_law = has_empirical(from.joint.candidates, domain_.candidates());
+    std::vector<Trial> found = rounds.run(from.joint, !has_law);
     size_t added = 0;
     for (const size_t i : by_evidence(found)) {
       if (found[i].log_evidence < from.joint.log_evidence + limits_.search.min_log_evidence_gain ||
@@ -240,8 +239,7 @@ class Weighing {
       if (leads(found[i].candidates) && !is_elsewhere) continue;
       Trial joint = domain_.refit(found[i], all_runs_, domain_.initial_conditions_of(found[i]),
                                   until_convergence(limits_));
-      Trial train = assembled(joint, domain_.terms_of(joint), until_convergence(limits_));
-      add_leader(std::move(train), std::move(joint));
+      add_joint(std::move(joint));
       ++added;
     }
   }
@@ -258,25 +256,17 @@ class Weighing {
     const Effort effort = within_reach(until_convergence(limits_), from.joint, limits_);
     const auto add_if_near = [&](Trial joint) {
       if (joint.log_evidence < best().joint.log_evidence - limits_.held_out.within) return;
-      Trial train = assembled(joint, domain_.terms_of(joint), until_convergence(limits_));
-      add_leader(std::move(train), std::move(joint));
+      add_joint(std::move(joint));
     };
     std::vector<Trial> parents = {from.joint};
     if (std::ranges::any_of(from.joint.candidates, swings)) {
       parents.push_back(together_without(from.joint, swings, until_convergence(limits_)));
     }
     for (const Trial& about : parents) {
-      std::vector<size_t> swinging;
-      for (size_t c = 0; c < all.size(); ++c) {
-        if (swings(c) && !acts_already(about.candidates, c, all)) swinging.push_back(c);
-      }
-      const auto starts = domain_.starts(about, swinging, all_runs_,
-                                         slow_runs<D>(domain_, about, {all_runs_}), threads_);
-      std::vector<Task<D>> tasks;
-      for (size_t i = 0; i < swinging.size(); ++i) {
-        for (const auto& start : starts[i]) tasks.push_back({swinging[i], start});
-      }
-      for (const Trial& both : extend_by_tasks(domain_, about, tasks, all_runs_, threads_)) {
+      const Terms<D> terms =
+          terms_to_add(domain_, about, addable(about.candidates, all, &CandidateTraits::swings),
+                       all_runs_, slow_runs<D>(domain_, about, {all_runs_}), threads_);
+      for (const Trial& both : extend_by_each(domain_, about, terms, all_runs_, threads_)) {
         add_if_near(together_without(both, is_limit, effort));
       }
     }
@@ -286,10 +276,8 @@ class Weighing {
   template <class Condition>
   Trial together_without(const Trial& joint, const Condition& is_left_out,
                          const Effort& effort) const {
-    Members<typename D::Start> others;
-    for (const auto& term : domain_.terms_of(joint)) {
-      if (!is_left_out(term.candidate)) others.push_back({term});
-    }
+    Members<typename D::Start> others = members_of(domain_.terms_of(joint));
+    std::erase_if(others, [&](const auto& other) { return is_left_out(other.term.candidate); });
     return domain_.assemble(joint, others, all_runs_, effort);
   }
 
@@ -328,15 +316,12 @@ class Weighing {
     // The forecast is crude: a cell has little effect until it limits its string.
     constexpr double forecast_error = 20.0;
     const std::vector<CandidateTraits>& all = domain_.candidates();
-    std::vector<size_t> rest = from.joint.candidates, others;
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(which));
-    const auto without = std::ranges::find_if(
-        leaders_, [&](const Leader& l) { return same_candidates(rest, trials_[l.at].candidates); });
-    if (without == leaders_.end()) return;
-    for (size_t c = 0; c < all.size(); ++c) {
-      if (all[c].kind_of_place.empty() || !all[c].is_linear) continue;
-      if (!acts_already(from.joint.candidates, c, all)) others.push_back(c);
-    }
+    const size_t at = leader_of(candidates_of(members_of(terms, which)));
+    if (at == leaders_.size()) return;
+    const Leader* without = &leaders_[at];
+    const std::vector<size_t> others =
+        addable(from.joint.candidates, all,
+                [](const CandidateTraits& c) { return !c.kind_of_place.empty() && c.is_linear; });
     const std::vector<double> gains =
         domain_.gains(without->joint, others, slow_runs<D>(domain_, without->joint, {all_runs_}));
     const Effort effort =
@@ -345,8 +330,7 @@ class Weighing {
     for (size_t i = 0; i < others.size(); ++i) {
       const size_t c = others[i];
       if (forecast_error * gains[i] < without->joint.fit.chi2 - from.joint.fit.chi2) continue;
-      Members<typename D::Start>& members = sets.emplace_back();
-      for (const auto& term : terms) members.push_back({term});
+      Members<typename D::Start>& members = sets.emplace_back(members_of(terms));
       // A candidate of the same kind starts from the values of the one it replaces.
       const bool is_alike = all[c].kind_of_place == all[terms[which].candidate].kind_of_place;
       members[which].term = {c, is_alike ? terms[which].start : domain_.start_of(c)};
@@ -358,25 +342,18 @@ class Weighing {
     for (const size_t k : by_evidence(tried)) {
       if (!(tried[k].log_evidence > from.joint.log_evidence)) return;
       if (!tried[k].objection.empty() || leads(tried[k].candidates)) continue;
-      Trial train = assembled(tried[k], domain_.terms_of(tried[k]), until_convergence(limits_));
-      add_leader(std::move(train), std::move(tried[k]));
+      add_joint(std::move(tried[k]));
       return;
     }
   }
 
-  void add_without(const Leader& from, const std::vector<Term<typename D::Start>>& terms,
-                   size_t left_out) {
-    Members<typename D::Start> members;
-    std::vector<size_t> candidates;
-    for (size_t i = 0; i < terms.size(); ++i) {
-      if (i == left_out) continue;
-      members.push_back({terms[i]});
-      candidates.push_back(terms[i].candidate);
-    }
+  void add_without(const Leader& from, const Terms<D>& terms, size_t left_out) {
+    const Members<typename D::Start> members = members_of(terms, left_out);
+    const std::vector<size_t> candidates = candidates_of(members);
     // Nonlinear candidates are refitted even if the set leads already: the result depends on the
     // start.
-    const auto is_bent = [&](size_t c) { return !domain_.candidates()[c].is_linear; };
-    if (leads(candidates) && std::ranges::none_of(candidates, is_bent)) return;
+    const auto is_linear = [&](size_t c) { return domain_.candidates()[c].is_linear; };
+    if (leads(candidates) && std::ranges::all_of(candidates, is_linear)) return;
     // Removing the candidate may move the others far, in particular nominal values that it
     // replaced.
     Effort growing = until_convergence(limits_);
@@ -386,37 +363,39 @@ class Weighing {
     // This model contains the nominal model, so a fit that is worse did not converge and is
     // skipped.
     if (!(joint.fit.chi2 < nominal().joint.fit.chi2 + limits_.leaders.near_chi2)) return;
-    const bool is_out_of_reach = !is_near(joint, from.joint, limits_);
-    Trial train =
-        assembled(joint, domain_.terms_of(joint),
-                  is_out_of_reach ? Effort{.max_iterations = limits_.fitting.brief_iterations}
-                                  : until_convergence(limits_));
-    add_leader(std::move(train), std::move(joint));
+    if (is_near(joint, from.joint, limits_)) {
+      add_joint(std::move(joint));
+    } else {
+      const Effort brief{.max_iterations = limits_.fitting.brief_iterations};
+      Trial train = on_train_runs(joint, brief);
+      add_leader(std::move(train), std::move(joint));
+    }
   }
 
-  // Fits the terms to the train runs, starting from the result of a fit to all runs.
-  Trial assembled(const Trial& joint, const std::vector<Term<typename D::Start>>& terms,
-                  const Effort& effort) const {
+  // Fits the candidates of `joint`, which is fitted to all runs, to the train runs.
+  Trial on_train_runs(const Trial& joint, const Effort& effort) const {
     const std::vector<typename D::Begin> begins = domain_.initial_conditions_of(joint);
     const Trial start = domain_.with_initial_conditions(
         joint, {begins.begin(), begins.begin() + static_cast<std::ptrdiff_t>(train_.size())});
-    Members<typename D::Start> members;
-    for (const auto& term : terms) members.push_back({term});
-    return domain_.assemble(start, members, train_, effort);
+    return domain_.assemble(start, members_of(domain_.terms_of(joint)), train_, effort);
+  }
+
+  // Adds an explanation that is fitted to all runs.
+  void add_joint(Trial joint) {
+    Trial train = on_train_runs(joint, until_convergence(limits_));
+    add_leader(std::move(train), std::move(joint));
   }
 
   // Adds a leader, or replaces one with smaller joint evidence. Both fits are replaced together:
   // the held-out evidence is their difference, which requires a common local minimum.
   void add_leader(Trial train, Trial joint) {
-    const auto leader = std::find_if(leaders_.begin(), leaders_.end(), [&](const Leader& l) {
-      return same_candidates(train.candidates, trials_[l.at].candidates);
-    });
-    const bool leads_already = leader != leaders_.end();
-    if (leads_already && !(joint.log_evidence > leader->joint.log_evidence)) return;
+    const size_t leader = leader_of(train.candidates);
+    const bool leads_already = leader < leaders_.size();
+    if (leads_already && !(joint.log_evidence > leaders_[leader].joint.log_evidence)) return;
     predict_held(train);
     const size_t at = place_of(std::move(train));
     if (leads_already) {
-      leader->joint = std::move(joint);
+      leaders_[leader].joint = std::move(joint);
     } else {
       leaders_.push_back({at, std::move(joint)});
     }
@@ -448,13 +427,12 @@ class Weighing {
   // fitted to all runs: some physical, some empirical.
   std::vector<size_t> worth_adding(const Trial& joint, const std::vector<size_t>& parent) const {
     const std::vector<CandidateTraits>& all = domain_.candidates();
-    std::vector<size_t> untried;
-    for (size_t c = 0; c < all.size(); ++c) {
+    std::vector<size_t> untried = addable(parent, all, &CandidateTraits::is_linear);
+    std::erase_if(untried, [&](size_t c) {
       std::vector<size_t> together = parent;
       together.push_back(c);
-      if (!all[c].is_linear || acts_already(parent, c, all) || leads(together)) continue;
-      untried.push_back(c);
-    }
+      return leads(together);
+    });
     const std::vector<double> gains =
         domain_.gains(joint, untried, slow_runs<D>(domain_, joint, {all_runs_}));
     const auto beyond_chance = [&](size_t i) {
@@ -480,10 +458,15 @@ class Weighing {
     return best;
   }
 
-  bool leads(const std::vector<size_t>& candidates) const {
-    return std::any_of(leaders_.begin(), leaders_.end(), [&](const Leader& l) {
+  // Index of the leader with these candidates; the number of leaders if there is none.
+  size_t leader_of(const std::vector<size_t>& candidates) const {
+    const auto leader = std::ranges::find_if(leaders_, [&](const Leader& l) {
       return same_candidates(candidates, trials_[l.at].candidates);
     });
+    return static_cast<size_t>(leader - leaders_.begin());
+  }
+  bool leads(const std::vector<size_t>& candidates) const {
+    return leader_of(candidates) < leaders_.size();
   }
 
   // Stores the trial, replacing one with the same candidates if there is one; returns its index.

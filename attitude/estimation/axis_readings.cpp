@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics/linear.h"
+
 namespace photorque {
 
 AxisReadings angles_about(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
@@ -21,6 +23,17 @@ AxisReadings angles_about(const Observation& rows, const Vec3& axis, size_t firs
   return read;
 }
 
+std::optional<double> rate_along(const Observation& rows, size_t row, const Vec3& axis) {
+  double along_rad_s = 0.0, read = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    if (axis[k] == 0.0) continue;
+    along_rad_s += axis[k] * rows.gyro_rad_s[row][k];
+    read += rows.gyro_rows[row][k];
+  }
+  if (!(read > 0.0) || !std::isfinite(along_rad_s)) return std::nullopt;
+  return along_rad_s;
+}
+
 AxisReadings rates_about(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   Eigen::Index along = 0;
   axis.cwiseAbs().maxCoeff(&along);
@@ -32,6 +45,20 @@ AxisReadings rates_about(const Observation& rows, const Vec3& axis, size_t first
     read.value.push_back(rows.gyro_rad_s[i][along]);
   }
   return read;
+}
+
+Eigen::Vector4d fitted_cubic(const AxisReadings& read, size_t first, size_t last, double at_s,
+                             double unit_s, double origin) {
+  const auto count = static_cast<Eigen::Index>(last - first);
+  Eigen::MatrixXd powers(count, 4);
+  Eigen::VectorXd values(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const size_t k = first + static_cast<size_t>(i);
+    const double since = (read.time_s[k] - at_s) / unit_s;
+    powers.row(i) << 1.0, since, since * since, since * since * since;
+    values[i] = read.value[k] - origin;
+  }
+  return least_squares(powers, values).solution;
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // Readings of the angle or rate of a body about its only axis of rotation.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "attitude/observation/observation.h"
@@ -15,8 +16,16 @@ struct AxisReadings {
 
 // Angles in the rows [first, last), with whole turns counted.
 AxisReadings angles_about(const Observation& rows, const Vec3& axis, size_t first, size_t last);
+// The rate of the gyro along the axis in a row; nothing if no axis of the gyro with a part along it
+// was read.
+std::optional<double> rate_along(const Observation& rows, size_t row, const Vec3& axis);
 // Rates in the rows [first, last).
 AxisReadings rates_about(const Observation& rows, const Vec3& axis, size_t first, size_t last);
+
+// Coefficients of the cubic of (t − at_s)/unit_s that is fitted to the readings [first, last) minus
+// `origin`.
+Eigen::Vector4d fitted_cubic(const AxisReadings& read, size_t first, size_t last, double at_s,
+                             double unit_s, double origin = 0.0);
 
 // Row in [first, last) at which the body starts to move suddenly after a rest, for example when a
 // motor is switched on or the body is released; `first` if there is no such rest.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -19,16 +20,22 @@ constexpr double agrees = 0.2;
 // A gyro bias of this size is not evidence of a wrong convention.
 constexpr double usual_bias_rad_s = 0.01;
 
-enum class QuaternionReading { as_is, conjugated, scalar_last, scalar_last_conjugated };
+// An interpretation of the four numbers of a quaternion.
+struct QuaternionReading {
+  bool scalar_last = false, conjugated = false;
+  const char* text = "";  // empty: as the header states
+};
 
-Quat read(const Quat& q, QuaternionReading reading) {
-  const bool last = reading == QuaternionReading::scalar_last ||
-                    reading == QuaternionReading::scalar_last_conjugated;
+constexpr std::array<QuaternionReading, 4> quaternion_readings = {
+    {{false, false, ""},
+     {false, true, "the quaternions rotate lab vectors into the body (they are conjugated)"},
+     {true, false, "the quaternions have their scalar last"},
+     {true, true, "the quaternions have their scalar last and are conjugated"}}};
+
+Quat read(const Quat& q, const QuaternionReading& reading) {
   // The columns were read as w, x, y, z; with the scalar last they are x, y, z, w.
-  const Quat in_order = last ? Quat(q.z(), q.w(), q.x(), q.y()) : q;
-  const bool conjugated = reading == QuaternionReading::conjugated ||
-                          reading == QuaternionReading::scalar_last_conjugated;
-  return conjugated ? in_order.conjugate() : in_order;
+  const Quat in_order = reading.scalar_last ? Quat(q.z(), q.w(), q.x(), q.y()) : q;
+  return reading.conjugated ? in_order.conjugate() : in_order;
 }
 
 struct Pair {
@@ -75,8 +82,8 @@ std::vector<Pair> pairs_of(const Observation& seen) {
 
 // Disagreement of gyro and attitude: the mean square difference of the rates relative to their mean
 // square, averaged over the axes. Biases up to usual_bias_rad_s do not count.
-double disagreement(const std::vector<Pair>& pairs, QuaternionReading reading,
-                    const Mat3& gyro_matrix) {
+double disagreement(const std::vector<Pair>& pairs, const Mat3& gyro_matrix = Mat3::Identity(),
+                    const QuaternionReading& reading = {}) {
   Vec3 mean = Vec3::Zero(), square = Vec3::Zero(), energy = Vec3::Zero();
   for (const Pair& p : pairs) {
     const Vec3 rate =
@@ -136,18 +143,42 @@ std::vector<GyroReading> gyro_readings() {
   return all;
 }
 
-std::string text_of(QuaternionReading reading) {
-  switch (reading) {
-    case QuaternionReading::as_is:
-      return "";
-    case QuaternionReading::conjugated:
-      return "the quaternions rotate lab vectors into the body (they are conjugated)";
-    case QuaternionReading::scalar_last:
-      return "the quaternions have their scalar last";
-    case QuaternionReading::scalar_last_conjugated:
-      return "the quaternions have their scalar last and are conjugated";
+// An interpretation of gyro and quaternions.
+struct Interpretation {
+  GyroReading gyro = {Mat3::Identity(), 0, ""};
+  QuaternionReading quaternions = {};
+  double disagreement = 0.0;
+};
+
+// The interpretation of least disagreement, or that of the header, whose disagreement is `as_is`.
+// Among interpretations that agree equally well, the one with the fewest changes is used.
+template <class Disagreement>
+Interpretation best_interpretation(double as_is, std::span<const QuaternionReading> quaternions,
+                                   const Disagreement& disagreement_of) {
+  Interpretation best;
+  best.disagreement = as_is;
+  double best_cost = as_is;
+  for (const QuaternionReading& reading : quaternions) {
+    const int changed = reading.scalar_last || reading.conjugated ? 1 : 0;
+    for (const GyroReading& gyro : gyro_readings()) {
+      const double d = disagreement_of(gyro.matrix, reading);
+      const double cost = d + 0.01 * (gyro.changes + changed);
+      if (cost >= best_cost) continue;
+      best = {gyro, reading, d};
+      best_cost = cost;
+    }
   }
-  return "";
+  return best;
+}
+
+// Whether an interpretation agrees, and far better than that of the header.
+bool is_right(double found, double as_is) {
+  return found <= agrees && found <= 0.2 * as_is;
+}
+
+std::string read_so(const std::string& convention, const std::string& reason) {
+  return "convention: " + convention + ": the recording was read so, because only then do " +
+         reason;
 }
 
 void read_gyro_as(const Mat3& matrix, Observation& seen) {
@@ -200,10 +231,6 @@ double disagreement(const std::vector<Change>& changes, const Mat3& inertia_kg_m
   return all > 0.0 ? off / all : 0.0;
 }
 
-}  // namespace
-
-namespace {
-
 // The axes of wheels with a negative estimated moment of inertia.
 std::array<bool, 3> reversed_wheels(const FreeInertia& found) {
   constexpr double sigmas = 5.0;
@@ -214,7 +241,7 @@ std::array<bool, 3> reversed_wheels(const FreeInertia& found) {
   return reversed;
 }
 
-// Reverses the speeds of these wheels and returns the names of their columns.
+// Reverses the speeds of these wheels. Returns a clause about the change; empty: none.
 std::string turn_wheels(const std::array<bool, 3>& reversed, std::span<Observation> segments) {
   std::string names;
   for (int k = 0; k < 3; ++k) {
@@ -227,7 +254,9 @@ std::string turn_wheels(const std::array<bool, 3>& reversed, std::span<Observati
     }
     names += std::string(names.empty() ? "" : ", ") + "wheel_" + "xyz"[k] + "_rad_s";
   }
-  return names;
+  if (names.empty()) return "";
+  return "the sign of " + names +
+         " was turned: as it stands the wheel would have a negative moment of inertia";
 }
 
 // An interpretation of the gyro, and the inertia estimated from the rates with it.
@@ -293,14 +322,12 @@ std::string repair_by_any_inertia(std::span<Observation> segments, const Mat3& i
   std::string text;
   if (taken->gyro.changes > 0) {
     for (Observation& seen : segments) read_gyro_as(taken->gyro.matrix, seen);
-    text = "convention: " + taken->gyro.text +
-           ": the recording was read so, because only then do the rates change as any inertia "
-           "makes them; a free body shows neither which axis is reversed nor whether two are "
-           "exchanged";
+    text = read_so(taken->gyro.text,
+                   "the rates change as any inertia makes them; a free body shows neither which "
+                   "axis is reversed nor whether two are exchanged");
   }
   if (wheels.empty()) return text;
-  return text + (text.empty() ? "convention: the sign of " : "; the sign of ") + wheels +
-         " was turned: as it stands the wheel would have a negative moment of inertia";
+  return text + (text.empty() ? "convention: " : "; ") + wheels;
 }
 
 }  // namespace
@@ -310,8 +337,7 @@ std::string repair_free_rates(std::span<Observation> segments, const Mat3& inert
   std::vector<Change> changes;
   for (const Observation& seen : segments) {
     if (!seen.has_gyro || seen.has_some_attitude()) return "";
-    const std::vector<Change> own = changes_of(seen);
-    changes.insert(changes.end(), own.begin(), own.end());
+    std::ranges::copy(changes_of(seen), std::back_inserter(changes));
   }
   if (changes.size() < fewest) return "";
   const double as_is = disagreement(changes, inertia_kg_m2, Mat3::Identity());
@@ -321,77 +347,74 @@ std::string repair_free_rates(std::span<Observation> segments, const Mat3& inert
     const auto found = free_inertia({segments.begin(), segments.end()}, FreeDrag::none);
     if (!found || found->left > agrees) return "";
     const std::string wheels = turn_wheels(reversed_wheels(*found), segments);
-    return wheels.empty() ? ""
-                          : "convention: the sign of " + wheels +
-                                " was turned: as it stands the wheel would have a negative moment "
-                                "of inertia";
+    return wheels.empty() ? "" : "convention: " + wheels;
   }
-  double best = as_is, best_cost = as_is;
-  GyroReading best_gyro{Mat3::Identity(), 0, ""};
-  for (const GyroReading& gyro : gyro_readings()) {
-    const double d = disagreement(changes, inertia_kg_m2, gyro.matrix);
-    const double cost = d + 0.01 * gyro.changes;
-    if (cost >= best_cost) continue;
-    best = d;
-    best_cost = cost;
-    best_gyro = gyro;
+  const Interpretation best =
+      best_interpretation(as_is, std::span(quaternion_readings).first(1),
+                          [&](const Mat3& gyro, const QuaternionReading&) {
+                            return disagreement(changes, inertia_kg_m2, gyro);
+                          });
+  if (!is_right(best.disagreement, as_is)) return repair_by_any_inertia(segments, inertia_kg_m2);
+  for (Observation& seen : segments) read_gyro_as(best.gyro.matrix, seen);
+  return read_so(best.gyro.text,
+                 "the rates change as the stated inertia makes them; a free body does not show "
+                 "which axis is reversed");
+}
+
+Recording read_as(const AngleConvention& angles, Recording recording) {
+  recording.angle_sequence = angles.sequence;
+  for (Channel& channel : recording.channels) {
+    if (channel.name != "roll_rad" && channel.name != "pitch_rad" && channel.name != "yaw_rad") {
+      continue;
+    }
+    for (double& angle : channel.values) angle *= angles.factor;
   }
-  if (best > agrees || best > 0.2 * as_is) return repair_by_any_inertia(segments, inertia_kg_m2);
-  for (Observation& seen : segments) read_gyro_as(best_gyro.matrix, seen);
-  return "convention: " + best_gyro.text +
-         ": the recording was read so, because only then do the rates change as the stated inertia "
-         "makes them; a free body does not show which axis is reversed";
+  return recording;
 }
 
 std::optional<AngleConvention> convention_of_angles(const Recording& recording,
                                                     const Platform& platform,
                                                     const std::string& name) {
-  constexpr std::array<const char*, 3> columns = {"roll_rad", "pitch_rad", "yaw_rad"};
   const MotionColumns motion(recording, platform, name);
   if (!motion.has_angles() || !motion.has_gyro() || !recording.angle_sequence.empty()) {
     return std::nullopt;
   }
-  const auto pairs_as = [&](std::string_view sequence, double factor) {
-    Recording read = recording;
-    read.angle_sequence = sequence;
-    for (Channel& channel : read.channels) {
-      if (std::find(columns.begin(), columns.end(), channel.name) == columns.end()) continue;
-      for (double& angle : channel.values) angle *= factor;
-    }
-    return pairs_of(observe(read, name, platform, std::numeric_limits<size_t>::max()));
+  const auto pairs_as = [&](const AngleConvention& angles) {
+    return pairs_of(
+        observe(read_as(angles, recording), name, platform, std::numeric_limits<size_t>::max()));
   };
-  AngleConvention usual{std::string(angle_sequences[0])};
-  const std::vector<Pair> as_usual = pairs_as(usual.sequence, 1.0);
+  const AngleConvention usual{std::string(angle_sequences[0])};
+  const std::vector<Pair> as_usual = pairs_as(usual);
   constexpr size_t fewest = 20;
   if (as_usual.size() < fewest) return usual;
-  const double as_is = disagreement(as_usual, QuaternionReading::as_is, Mat3::Identity());
+  const double as_is = disagreement(as_usual);
   if (as_is < agrees) return usual;
   double by_axes = as_is;
   for (const GyroReading& gyro : gyro_readings()) {
-    by_axes = std::min(by_axes, disagreement(as_usual, QuaternionReading::as_is, gyro.matrix));
+    by_axes = std::min(by_axes, disagreement(as_usual, gyro.matrix));
   }
   double best = as_is;
   AngleConvention found = usual;
   for (const double factor : {1.0, degree_rad, 1.0 / degree_rad}) {
     for (const std::string_view sequence : angle_sequences) {
-      const double d =
-          disagreement(pairs_as(sequence, factor), QuaternionReading::as_is, Mat3::Identity());
+      const AngleConvention tried{std::string(sequence), factor};
+      const double d = disagreement(pairs_as(tried));
       if (!(d < best)) continue;
       best = d;
-      found = {std::string(sequence), factor};
+      found = tried;
     }
   }
   constexpr double better = 0.5;  // relative to other axes of the gyro
-  if (best > agrees || best > 0.2 * as_is || best > better * by_axes) return usual;
+  if (!is_right(best, as_is) || best > better * by_axes) return usual;
   const std::string unit = found.factor == 1.0  ? ""
                            : found.factor < 1.0 ? " and are in degrees under a header of radians"
                                                 : " and are in radians under a header of degrees";
-  found.text = "convention: roll, pitch and yaw are turned in the sequence " + found.sequence +
-               ", " + formula_of(found.sequence) + ", not " + usual.sequence + unit;
-  if (found.sequence == usual.sequence)
-    found.text = "convention: roll, pitch and yaw" + unit.substr(4);
-  found.text +=
-      ": the recording was read so, because only then do the rates integrate to the angles";
+  const std::string angles = found.sequence == usual.sequence
+                                 ? "roll, pitch and yaw" + unit.substr(4)
+                                 : "roll, pitch and yaw are turned in the sequence " +
+                                       found.sequence + ", " + formula_of(found.sequence) +
+                                       ", not " + usual.sequence + unit;
+  found.text = read_so(angles, "the rates integrate to the angles");
   return found;
 }
 
@@ -399,40 +422,24 @@ std::string repair_conventions(std::span<Observation> segments) {
   std::vector<Pair> pairs;
   for (const Observation& seen : segments) {
     if (!seen.has_gyro) return "";
-    const std::vector<Pair> own = pairs_of(seen);
-    pairs.insert(pairs.end(), own.begin(), own.end());
+    std::ranges::copy(pairs_of(seen), std::back_inserter(pairs));
   }
   if (pairs.size() < 20) return "";
-  const double as_is = disagreement(pairs, QuaternionReading::as_is, Mat3::Identity());
+  const double as_is = disagreement(pairs);
   if (as_is < agrees) return "";
-
-  double best = as_is, best_cost = as_is;
-  QuaternionReading best_reading = QuaternionReading::as_is;
-  GyroReading best_gyro{Mat3::Identity(), 0, ""};
-  for (const QuaternionReading reading :
-       {QuaternionReading::as_is, QuaternionReading::conjugated, QuaternionReading::scalar_last,
-        QuaternionReading::scalar_last_conjugated}) {
-    for (const GyroReading& gyro : gyro_readings()) {
-      const double d = disagreement(pairs, reading, gyro.matrix);
-      // Among interpretations that agree equally well, the one with the fewest changes is used.
-      const double cost =
-          d + 0.01 * (gyro.changes + static_cast<int>(reading != QuaternionReading::as_is));
-      if (cost >= best_cost) continue;
-      best = d;
-      best_cost = cost;
-      best_reading = reading;
-      best_gyro = gyro;
-    }
-  }
-  if (best > agrees || best > 0.2 * as_is) return "";
+  const auto [gyro, quaternions, best] = best_interpretation(
+      as_is, quaternion_readings, [&](const Mat3& matrix, const QuaternionReading& reading) {
+        return disagreement(pairs, matrix, reading);
+      });
+  if (!is_right(best, as_is)) return "";
   for (Observation& seen : segments) {
-    for (Quat& attitude : seen.attitude) attitude = read(attitude, best_reading);
-    read_gyro_as(best_gyro.matrix, seen);
+    for (Quat& attitude : seen.attitude) attitude = read(attitude, quaternions);
+    read_gyro_as(gyro.matrix, seen);
   }
-  const std::string quaternions = text_of(best_reading);
-  const bool both = !quaternions.empty() && !best_gyro.text.empty();
-  return "convention: " + quaternions + (both ? "; " : "") + best_gyro.text +
-         ": the recording was read so, because only then do the rates integrate to the attitude";
+  const std::string of_quaternions = quaternions.text;
+  const bool both = !of_quaternions.empty() && !gyro.text.empty();
+  return read_so(of_quaternions + (both ? "; " : "") + gyro.text,
+                 "the rates integrate to the attitude");
 }
 
 }  // namespace photorque

@@ -30,6 +30,9 @@ std::optional<AngleConvention> convention_of_angles(const Recording& recording,
                                                     const Platform& platform,
                                                     const std::string& name);
 
+// The recording with its angles converted from the convention `angles`.
+Recording read_as(const AngleConvention& angles, Recording recording);
+
 // Repairs the rates of a body on which little more than its inertia acts. Its rates must change
 // according to Euler's equations. An odd number of reversed axes, two exchanged axes or another
 // unit violate them. The data do not show which axes are reversed, so the interpretation with the

@@ -38,14 +38,16 @@ inference::SumsOfRuns sums_at(const Hypothesis& at, const std::vector<Observatio
   return inference::evaluate(model, model.point_of(at), {}).sums;
 }
 
-std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs) {
+Prediction residuals_of(const Fit& fit, size_t run, const Observation& seen) {
   PredictionOptions options;
   options.keep_residuals = true;
+  const Dynamics dynamics(fit.best.model_of(run, seen));
+  return predict(dynamics, fit.best.runs[run].initial, seen, {}, options);
+}
+
+std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs) {
   std::vector<Prediction> all;
-  for (size_t run = 0; run < runs.size(); ++run) {
-    const Dynamics dynamics(fit.best.model_of(run, runs[run]));
-    all.push_back(predict(dynamics, fit.best.runs[run].initial, runs[run], {}, options));
-  }
+  for (size_t run = 0; run < runs.size(); ++run) all.push_back(residuals_of(fit, run, runs[run]));
   return all;
 }
 
@@ -84,6 +86,16 @@ double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
   }
 }
 
+void drop_reading(int channel, size_t block, Observation& seen) {
+  if (channel >= vector_channels) {
+    seen.scalar[static_cast<size_t>(channel - vector_channels)].rows[block] = 0.0;
+  } else if (channel >= 3) {
+    seen.gyro_rows[block][channel - 3] = 0.0;
+  } else {
+    seen.attitude_rows[block] = 0.0;
+  }
+}
+
 int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,
                       std::vector<Observation>& runs) {
   int64_t dropped = 0;
@@ -96,12 +108,9 @@ int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds
         if (std::isfinite(residuals[run].residual[i][k])) rows.push_back(i);
       }
       for (const size_t n : inference::outliers(all[run][static_cast<size_t>(k)], limits)) {
-        // The components of an attitude are dropped together.
+        // An attitude may have been dropped for another component.
         if (k >= 3 || runs[run].attitude_rows[rows[n]] > 0.0) ++dropped;
-        if (k < 3) runs[run].attitude_rows[rows[n]] = 0.0;
-        if (k >= 3 && k < vector_channels) runs[run].gyro_rows[rows[n]][k - 3] = 0.0;
-        if (k < vector_channels) continue;
-        runs[run].scalar[static_cast<size_t>(k - vector_channels)].rows[rows[n]] = 0.0;
+        drop_reading(static_cast<int>(k), rows[n], runs[run]);
       }
     }
   }
@@ -232,7 +241,6 @@ double lowest_of(const DisturbanceKind* kind, const std::string& key) {
 Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Observation>& runs) {
   Hypothesis h;
   h.model = nominal.model;
-  std::vector<double> own;
   for (size_t d = 0; d < h.model.disturbances.size(); ++d) {
     const Disturbance& disturbance = h.model.disturbances[d];
     const DisturbanceKind* kind = find_kind(disturbance.kind);
@@ -247,10 +255,9 @@ Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Obs
         f.lowest = lowest_of(kind, parameter.key);
       }
       h.free.push_back(f);
-      if (per_run) own.push_back(parameter.value);
     }
   }
-  for (const Observation& seen : runs) h.runs.push_back({first_state(h.model, seen), own});
+  h.runs = starts_from_data(h, runs);
   return h;
 }
 

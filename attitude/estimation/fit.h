@@ -37,7 +37,9 @@ Hypothesis within_bounds(const Fit& fit, std::vector<Free> free,
 inference::SumsOfRuns sums_at(const Hypothesis& at, const std::vector<Observation>& runs,
                               const std::vector<Free>& extra, double tolerance = 1e-7);
 
-// All whitened residuals of a fit, one entry per run. NumericalError if it cannot be propagated.
+// All whitened residuals of a fit, of one run or one entry per run. NumericalError if it cannot be
+// propagated.
+Prediction residuals_of(const Fit& fit, size_t run, const Observation& seen);
 std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs);
 
 // Whitened residuals of each channel (recordings/columns.h) without gaps, one entry per run.
@@ -47,6 +49,9 @@ std::vector<inference::ChannelResiduals> channels_of(const std::vector<Predictio
 // the fit cannot be propagated.
 double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
                     const Thresholds::Noise& limits);
+
+// Drops the reading of a channel in a block; those of an attitude are dropped together.
+void drop_reading(int channel, size_t block, Observation& seen);
 
 // Drops outliers, which are readings far from the prediction by the residuals of their neighbours.
 // Returns their number.

@@ -7,6 +7,22 @@
 
 namespace photorque {
 
+std::vector<SharedParameter> Hypothesis::shared() const {
+  std::vector<SharedParameter> result;
+  for (const Free& f : free) {
+    if (f.per_run) continue;
+    result.push_back({f.disturbance, static_cast<size_t>(f.parameter),
+                      static_cast<Eigen::Index>(result.size()), parameter(f).value});
+  }
+  return result;
+}
+
+std::vector<SharedParameter> Hypothesis::shared(size_t disturbance) const {
+  std::vector<SharedParameter> result = shared();
+  std::erase_if(result, [&](const SharedParameter& s) { return s.disturbance != disturbance; });
+  return result;
+}
+
 AttitudeModel Hypothesis::model_of(size_t run, const Observation& seen) const {
   AttitudeModel result = model;
   result.schedule = seen.schedule;

@@ -29,6 +29,13 @@ struct RunStart {
   std::vector<double> own;  // values of the per-run parameters, in the order of Hypothesis::free
 };
 
+// A free parameter that all runs share.
+struct SharedParameter {
+  size_t disturbance = 0, parameter = 0;
+  Eigen::Index at = 0;  // index among the shared parameters of the fit
+  double value = 0.0;
+};
+
 // A model with its free parameters at their present values.
 struct Hypothesis {
   AttitudeModel model;  // contains the shared parameters; model_of() replaces its schedule
@@ -42,6 +49,10 @@ struct Hypothesis {
   const Parameter& parameter(const Free& f) const {
     return model.disturbances[f.disturbance].parameters[static_cast<size_t>(f.parameter)];
   }
+  // The free parameters that all runs share, in the order of the fit: all, or those of one
+  // disturbance.
+  std::vector<SharedParameter> shared() const;
+  std::vector<SharedParameter> shared(size_t disturbance) const;
   // The model of one run, with the run's schedule and per-run parameters.
   AttitudeModel model_of(size_t run, const Observation& seen) const;
 };

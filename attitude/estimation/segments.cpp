@@ -15,6 +15,11 @@
 
 namespace photorque {
 
+bool is_commanded(const Schedule& schedule) {
+  return std::ranges::any_of(schedule.held,
+                             [](const ZeroOrderHold& held) { return held != ZeroOrderHold{}; });
+}
+
 namespace {
 
 // Initial angle, rate and torque of an axis are three numbers; fewer readings do not determine
@@ -129,11 +134,6 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   return kinks;
 }
 
-bool is_commanded(const Schedule& schedule) {
-  return std::any_of(schedule.held.begin(), schedule.held.end(),
-                     [](const ZeroOrderHold& held) { return held != ZeroOrderHold{}; });
-}
-
 Segments cut(const Recording& recording, const std::string& name, const Platform& platform,
              size_t max_blocks) {
   Observation rows = observe(recording, name, platform, std::numeric_limits<size_t>::max());
@@ -148,7 +148,8 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
         "the rate is the difference of neighbouring angles: it contains nothing new and is left "
         "out");
   }
-  const double share = static_cast<double>(max_blocks) / static_cast<double>(rows.blocks());
+  const double blocks_per_row =
+      static_cast<double>(max_blocks) / static_cast<double>(rows.blocks());
   size_t first = 0;
   const auto close = [&](size_t end) {
     size_t last = end;
@@ -179,7 +180,7 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
       first = released;
     }
     if (last > first && rows.readings(first, last) >= min_readings) {
-      const auto blocks = static_cast<size_t>(share * static_cast<double>(last - first));
+      const auto blocks = static_cast<size_t>(blocks_per_row * static_cast<double>(last - first));
       result.all.push_back(rows.part(first, last).averaged(std::max(min_readings, blocks)));
     } else {
       result.too_short += last > first ? 1 : 0;
@@ -204,18 +205,6 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
                      "a recording with longer ones");
   }
   return result;
-}
-
-// The recording with its angles converted from the convention `angles`.
-Recording read_as(const AngleConvention& angles, Recording recording) {
-  recording.angle_sequence = angles.sequence;
-  for (Channel& channel : recording.channels) {
-    if (channel.name != "roll_rad" && channel.name != "pitch_rad" && channel.name != "yaw_rad") {
-      continue;
-    }
-    for (double& angle : channel.values) angle *= angles.factor;
-  }
-  return recording;
 }
 
 // The recording with zeros for the missing coordinate of a body that slides along a line. Empty if
@@ -351,7 +340,7 @@ std::vector<Break> changes_of(const AxisReadings& read, size_t window) {
 // The changes of slope that are much larger than all others. Among neighbouring changes, only the
 // most significant is kept. An oscillating law has such changes everywhere and therefore no breaks.
 std::vector<Break> breaks_of(const AxisReadings& read, size_t window) {
-  constexpr double least_standard_errors = 10.0, least_share = 0.5, least_medians = 8.0;
+  constexpr double least_standard_errors = 10.0, least_fraction = 0.5, least_medians = 8.0;
   const std::vector<Break> changes = changes_of(read, window);
   if (changes.empty()) return {};
   std::vector<double> sizes_rad_s2;
@@ -359,7 +348,7 @@ std::vector<Break> breaks_of(const AxisReadings& read, size_t window) {
   const double median_rad_s2 = upper_median(std::move(sizes_rad_s2));
   std::vector<Break> breaks;
   for (const Break& found : changes) {
-    if (found.change_rad_s2() < least_share * found.larger_rad_s2() ||
+    if (found.change_rad_s2() < least_fraction * found.larger_rad_s2() ||
         found.change_rad_s2() < least_medians * median_rad_s2 ||
         !(found.standard_errors() >= least_standard_errors)) {  // 0/0 for equal readings
       continue;

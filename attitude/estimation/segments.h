@@ -33,6 +33,9 @@ Segments observe_segments(const Recording& recording, const std::string& name,
 // effects over such an interval does not end.
 void refuse_jump_of_clock(const Recording& recording, const std::string& name);
 
+// Whether any command, current or wheel speed is recorded.
+bool is_commanded(const Schedule& schedule);
+
 // Rows [first, last) in which the rate about one axis follows one law.
 struct ConsistentSegment {
   size_t first = 0, last = 0;

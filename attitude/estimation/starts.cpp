@@ -23,17 +23,17 @@ std::optional<double> first_of(const Observation& seen, Scalar scalar) {
 
 // Attitudes with this tilt and yaw, in eight directions of the tilt; one attitude if the tilt is
 // zero.
-std::vector<Quat> leaning(double tilt_rad, double yaw_rad) {
+std::vector<Quat> tilted_attitudes(double tilt_rad, double yaw_rad) {
   constexpr int directions = 8;
   std::vector<Quat> all;
   for (int d = 0; d < directions; ++d) {
     const double towards = 2.0 * pi * d / directions;
-    const Quat lean(Eigen::AngleAxisd(tilt_rad, Vec3(-std::sin(towards), std::cos(towards), 0.0)));
+    const Quat tilt(Eigen::AngleAxisd(tilt_rad, Vec3(-std::sin(towards), std::cos(towards), 0.0)));
     // The tilt also rotates body x slightly, by a second-order effect.
     double about_z = yaw_rad;
     Quat q;
     for (int i = 0; i < 8; ++i) {
-      q = lean * Quat(Eigen::AngleAxisd(about_z, Vec3::UnitZ()));
+      q = tilt * Quat(Eigen::AngleAxisd(about_z, Vec3::UnitZ()));
       const double now = scalar_reading(Scalar::yaw, q, Vec3::Zero()).value;
       about_z += scalar_difference(Scalar::yaw, yaw_rad, now);
     }
@@ -102,7 +102,7 @@ std::vector<Quat> attitudes_of(const AttitudeModel& model, const Observation& se
     return {attitude_of_angles("zyx", {roll.value_or(0.0), pitch.value_or(0.0), about_z})};
   }
   if (!tilt && !yaw) return {otherwise};
-  return leaning(tilt.value_or(0.0), about_z);
+  return tilted_attitudes(tilt.value_or(0.0), about_z);
 }
 
 // Rate of an angle at the start of the run.

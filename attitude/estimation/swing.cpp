@@ -67,16 +67,7 @@ LocalMotion local_motion(const AxisReadings& read) {
     while (end < read.row.size() && read.time_s[end] <= t + reach_s) ++end;
     while (read.time_s[at] < t) ++at;
     if (end < begin + fewest) continue;
-    const auto count = static_cast<Eigen::Index>(end - begin);
-    Eigen::MatrixXd powers(count, 4);
-    Eigen::VectorXd angles(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const size_t k = begin + static_cast<size_t>(i);
-      const double since = (read.time_s[k] - t) / reach_s;
-      powers.row(i) << 1.0, since, since * since, since * since * since;
-      angles[i] = read.value[k];
-    }
-    const Eigen::Vector4d c = least_squares(powers, angles).solution;
+    const Eigen::Vector4d c = fitted_cubic(read, begin, end, t, reach_s);
     all.emplace_back(c[0], c[1] / reach_s, 2.0 * c[2] / (reach_s * reach_s));
     result.row.push_back(read.row[at]);
     result.time_s.push_back(t);

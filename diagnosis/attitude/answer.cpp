@@ -17,7 +17,7 @@
 
 namespace photorque {
 
-void tell(const DiagnoseOptions& options, const std::string& what) {
+void report_step(const DiagnoseOptions& options, const std::string& what) {
   if (options.progress) options.progress(what);
 }
 
@@ -95,7 +95,7 @@ Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const Recor
   a.trials =
       inference::search(domain, base, data.train, options.threads, begin ? &*begin : nullptr);
   a.depends_on = dependences(a.trials, a.all);
-  tell(options, "comparing with the held-out data");
+  report_step(options, "comparing with the held-out data");
   inference::weigh_with_held_out(domain, data.train, data.held, options.threads, a.trials);
   const auto excess = [&](size_t trial) {
     return domain.excess_sigma(a.trials[trial], data.train);
@@ -142,7 +142,7 @@ void keep_predictive_explanation(const RecordedData& data, const Thresholds& lim
 Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
                             const DiagnoseOptions& options, Fit& nominal_fit, const Trial* near) {
   constexpr double most_left = 0.5;
-  tell(options, "fitting every effect of the catalogue");
+  report_step(options, "fitting every effect of the catalogue");
   Answer a = searched(nominal, nominal_fit, data, options, Among::all, near);
   const size_t known = a.decision.best_named;
   const bool is_known = a.decision.finding == inference::Finding::named ||
@@ -151,7 +151,7 @@ Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
   if (!data.noise_is_open && !is_known) return a;
   const Trial explained = is_known ? a.trials[known] : a.chosen();
   if (!estimate_noise_again(explained.fit, options.limits, data)) return a;
-  tell(options, "again, with the noise that was found");
+  report_step(options, "again, with the noise that was found");
   nominal_fit = fit(nominal_fit.best, data.train);
   return searched(nominal, nominal_fit, data, options, Among::all, is_known ? &explained : near);
 }
@@ -208,8 +208,8 @@ bool is_simple(const NominalModel& nominal) {
 Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOptions& options,
                Fit& nominal_fit) {
   const Thresholds& limits = options.limits;
-  // If the nominal model of a sparsely measured machine is far from the recording, a search at the
-  // noise level of the readings only distorts the nominal model.
+  // 1. Search with the noise of the readings. If the nominal model of a sparsely measured machine
+  // is far from the recording, this would only distort the nominal model.
   const bool is_far = !is_watched(nominal, data) &&
                       !(nominal_fit.chi2_per_sample() < limits.diverged_chi2_per_sample);
   const Platform& platform = nominal.model.platform;
@@ -225,17 +225,20 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
       return fine;
     }
   }
+  // 2. Fit of all textbook laws together. If it agrees with the readings, the search starts there.
   std::optional<Trial> laws;
   const Candidates known =
       candidates_among(among_with_discrepancy(nominal, data), nominal, data.train, limits);
   if (is_far || (turns_alone && is_of_textbook(known))) {
-    tell(options, "fitting the laws of a textbook together");
+    report_step(options, "fitting the laws of a textbook together");
     laws = fit_textbook_laws(nominal_fit, known, data);
   }
   if (is_far && laws && is_consistent_with_noise(laws->fit, data)) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, &*laws);
     if (fine.decision.finding != inference::Finding::unknown) return fine;
   }
+  // 3. Search in which the residual counts as noise. If its names alone agree with the readings,
+  // the search with the noise of the readings starts from them.
   RecordedData rough = data;
   std::optional<Answer> named =
       identify_with_discrepancy(nominal, rough, options, laws ? &*laws : nullptr);
@@ -249,11 +252,12 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
     }
     return std::move(*named);
   }
+  // 4. No effect is named: a law without a name describes the residual.
   if (!fine.trials.empty()) {
     describe(data, options, fine);
     return fine;
   }
-  tell(options, "describing the effects, with the residual counted as noise");
+  report_step(options, "describing the effects, with the residual counted as noise");
   Answer described = searched(nominal, fit_nominal(nominal, rough.train, limits), rough, options,
                               Among::unscanned, nullptr);
   described.rest_is_noise = true;

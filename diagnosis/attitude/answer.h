@@ -52,6 +52,6 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
 std::optional<double> simpler_by(const Trial& first, const Trial& second, const Answer& answer);
 
 // Reports the name of a step to `options.progress`, if that is set.
-void tell(const DiagnoseOptions& options, const std::string& what);
+void report_step(const DiagnoseOptions& options, const std::string& what);
 
 }  // namespace photorque

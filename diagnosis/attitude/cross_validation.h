@@ -39,6 +39,4 @@ class CrossValidation {
   std::vector<Segment> segments_;
 };
 
-using inference::gain_sigma;
-
 }  // namespace photorque

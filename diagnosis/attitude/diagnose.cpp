@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "attitude/disturbances/kind.h"
+#include "attitude/estimation/axis_readings.h"
 #include "attitude/estimation/fit.h"
+#include "attitude/estimation/segments.h"
 #include "attitude/estimation/swing.h"
 #include "core/constants.h"
 #include "core/errors.h"
@@ -37,25 +39,22 @@ void report_explanation(const Answer& answer, const Fit& nominal_fit, const Reco
                         const DiagnoseOptions& options, Diagnosis& d) {
   const Candidates& all = answer.all;
   const std::vector<Trial>& trials = answer.trials;
-  const std::vector<Where::Dependence>& depends_on = answer.depends_on;
   const inference::Decision& decision = answer.decision;
   const Trial& chosen = answer.chosen();
   d.verdict = verdict_of(decision.finding);
   d.confidence = decision.confidence;
   d.where = locate_differences(nominal_fit, data, all.limits.location);
-  if (d.verdict == Verdict::missing_physics) {
-    d.where.depends_on = depends_on;
+  if (d.verdict == Verdict::missing_physics || answer.beside) {
+    d.where.depends_on = answer.depends_on;
     d.effects = found_effects(decision, trials, all);
   }
   if (answer.beside) {
-    d.where.depends_on = depends_on;
-    d.effects = found_effects(decision, trials, all);
     for (size_t i = 0; i < d.effects.size(); ++i) {
       d.effects[i].probability = decision.confidence;
       d.effects[i].indistinguishable_from = answer.beside->rivals[i];
     }
   } else if (d.verdict == Verdict::unexplained) {
-    d.where.depends_on = of_unknown_law(depends_on, chosen, all);
+    d.where.depends_on = of_unknown_law(answer.depends_on, chosen, all);
     d.empirical = empirical_torques(chosen, all, data.train);
     d.effects = effects_beside_law(decision, trials, all);
     d.unnamed = unnamed_effects(decision, trials, all, d.effects);
@@ -122,22 +121,17 @@ void report_gains_over_segments(const Answer& answer, Diagnosis& d) {
                 "better with it than without it by %.1f standard errors",
                 d.effects[i].kind.c_str(), answer.beside->segments, answer.beside->sigma[i]));
   }
-  std::string sets;
-  for (const std::string& set : answer.beside->tied) sets += (sets.empty() ? "" : "; or ") + set;
-  if (sets.empty()) return;
+  if (answer.beside->tied.empty()) return;
   d.warnings.push_back("the segments are predicted as well, within 1.6 standard errors, by " +
-                       sets);
+                       joined_text(answer.beside->tied, "; or "));
 }
 
 // Adds a warning if held-out data do not test the names or scatter less than the noise.
 void warn_of_weak_holdout(Diagnosis& d) {
-  constexpr double as_well = 0.9, too_quiet_sigma = -5.0;
+  constexpr double as_well = inference::GateLimits{}.max_untested_fraction, too_quiet_sigma = -5.0;
   const double before = d.holdout->chi2_per_sample_before, after = d.holdout->chi2_per_sample_after;
   if (!d.effects.empty() && after > as_well * before) {
-    d.warnings.push_back(printed(
-        "the held-out data do not test the names: the nominal model predicts them as well (χ² per "
-        "sample %.3g, with the names %.3g)",
-        before, after));
+    d.warnings.push_back(untested_names(*d.holdout));
   }
   const double sigma = (after - 1.0) * std::sqrt(0.5 * static_cast<double>(d.holdout->samples));
   if (sigma < too_quiet_sigma) {
@@ -155,12 +149,9 @@ bool turns_little(const std::vector<Observation>& runs, const Vec3& axis) {
   return std::ranges::all_of(runs, [&](const Observation& seen) {
     double sum_rad_s = 0.0, count = 0.0;
     for (size_t i = 0; i < seen.blocks(); ++i) {
-      double along_rad_s = 0.0;
-      for (int k = 0; k < 3; ++k) {
-        if (axis[k] != 0.0) along_rad_s += axis[k] * seen.gyro_rad_s[i][k];
-      }
-      if (!std::isfinite(along_rad_s) || !(seen.gyro_rows[i].dot(axis.cwiseAbs()) > 0.0)) continue;
-      sum_rad_s += std::abs(along_rad_s);
+      const std::optional<double> along_rad_s = rate_along(seen, i, axis);
+      if (!along_rad_s) continue;
+      sum_rad_s += std::abs(*along_rad_s);
       count += 1.0;
     }
     return count > 0.0 && sum_rad_s / count * seen.duration_s() < most_rad;
@@ -206,9 +197,7 @@ bool is_an_inertia(const Trial& chosen, size_t disturbance) {
 Replay replay_of(const Fit& fit, const Observation& seen) {
   Replay replay;
   replay.recording = seen.name;
-  for (const ZeroOrderHold& held : seen.schedule.held) {
-    replay.has_commands = replay.has_commands || held != ZeroOrderHold{};
-  }
+  replay.has_commands = is_commanded(seen.schedule);
   replay.duration_s = seen.duration_s();
   replay.output_rate_Hz = static_cast<double>(seen.blocks() - 1) / seen.duration_s();
   const PlatformState& initial = fit.best.runs.front().initial;
@@ -232,7 +221,7 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
   RecordedData data = read_data(stated, recordings, holdouts, options);
   const NominalModel nominal = as_seen(stated, data);
-  tell(options, "fitting the nominal model");
+  report_step(options, "fitting the nominal model");
   Fit nominal_fit = settle(nominal, options.limits, data);
   Answer answer = explain(nominal, data, options, nominal_fit);
   if (!answer.rest_is_noise) {

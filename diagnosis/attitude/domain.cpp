@@ -3,7 +3,6 @@
 #include "attitude/estimation/fit.h"
 #include "core/parallel.h"
 #include "diagnosis/attitude/effects/scan.h"
-#include "diagnosis/attitude/effects/screen.h"
 #include "diagnosis/attitude/holdout.h"
 
 namespace photorque {
@@ -27,50 +26,16 @@ inference::CandidateTraits traits_of(const Candidate& c) {
   return traits;
 }
 
-FitSettings settings_of(const inference::Effort& effort) {
-  FitSettings settings;
-  settings.windows = effort.windows;
-  settings.max_iterations = effort.max_iterations;
-  settings.worth_chi2 = effort.worth_chi2;
-  settings.creep = effort.creep;
-  return settings;
-}
-
 }  // namespace
 
 AttitudeDomain::AttitudeDomain(const Candidates& all) : all_(all) {
   for (const Candidate& c : all.list) traits_.push_back(traits_of(c));
 }
 
-Trial AttitudeDomain::extend(const Trial& parent, size_t candidate, const Start& start,
-                             const Runs& runs, const Effort& effort) const {
-  return photorque::extend(parent, all_, candidate, start, runs, settings_of(effort));
-}
-
-Trial AttitudeDomain::refit(const Trial& trial, const Runs& runs, const std::vector<Begin>& begins,
-                            const Effort& effort) const {
-  return photorque::refit(trial, all_, runs, begins, settings_of(effort));
-}
-
-Trial AttitudeDomain::refit_near(const Trial& trial, const Trial& other, const Runs& runs,
-                                 const Effort& effort) const {
-  return photorque::refit_near(trial, other, all_, runs, settings_of(effort));
-}
-
 Trial AttitudeDomain::predict(const Trial& trial, const Runs& runs) const {
   Trial predicted = trial;
   predicted.fit = propagate_model(trial.fit, runs, all_.limits);
   return predicted;
-}
-
-std::vector<RunStart> AttitudeDomain::initial_conditions_from_data(const Trial& trial,
-                                                                   const Runs& runs) const {
-  return starts_from_data(trial.fit.best, runs);
-}
-
-Trial AttitudeDomain::with_initial_conditions(Trial trial, const std::vector<Begin>& begins) const {
-  trial.fit.best.runs = begins;
-  return trial;
 }
 
 std::vector<double> AttitudeDomain::gains(const Trial& at, const std::vector<size_t>& candidates,
@@ -85,16 +50,6 @@ std::vector<double> AttitudeDomain::gains(const Trial& at, const std::vector<siz
   return result;
 }
 
-inference::LinearProblem AttitudeDomain::linear_problem(
-    const Trial& at, const std::vector<inference::Term<Start>>& terms, const Runs& runs) const {
-  return photorque::linear_problem(at, all_, terms, runs);
-}
-
-Trial AttitudeDomain::assemble(const Trial& from, const inference::Members<Start>& members,
-                               const Runs& runs, const Effort& effort) const {
-  return photorque::assemble(from, all_, members, runs, settings_of(effort));
-}
-
 std::vector<std::vector<Start>> AttitudeDomain::starts(const Trial& parent,
                                                        const std::vector<size_t>& candidates,
                                                        const Runs& runs, const Runs& averages,
@@ -105,11 +60,6 @@ std::vector<std::vector<Start>> AttitudeDomain::starts(const Trial& parent,
     result[i] = starts_of(all_[candidates[i]], parent, runs, averages, lines_Hz, limits().scoring);
   });
   return result;
-}
-
-std::vector<Observation> AttitudeDomain::average(const Trial& about, const Runs& runs,
-                                                 size_t blocks) const {
-  return averaged_about(about.fit, runs, blocks);
 }
 
 std::vector<Observation> AttitudeDomain::cut(const Runs& runs, size_t pieces) const {
@@ -126,10 +76,6 @@ std::vector<Observation> AttitudeDomain::cut(const Runs& runs, size_t pieces) co
     }
   }
   return result;
-}
-
-double AttitudeDomain::excess_sigma(const Trial& trial, const Runs& runs) const {
-  return photorque::excess_sigma(trial.fit, runs, limits().noise);
 }
 
 }  // namespace photorque

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "attitude/model/platform.h"
@@ -12,16 +11,6 @@
 
 namespace photorque {
 
-namespace {
-
-std::string fixed_digits(double value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", std::max(0, decimals), value);
-  return text;
-}
-
-}  // namespace
-
 std::string with_error(double value, double sigma) {
   if (!(sigma > 0.0) || !std::isfinite(sigma)) return readable_number(value, 4);
   const auto magnitude = [](double x) { return static_cast<int>(std::floor(std::log10(x))); };
@@ -29,9 +18,8 @@ std::string with_error(double value, double sigma) {
   const bool plain = exponent >= -2 && exponent <= 4;
   const double unit = plain ? 1.0 : std::pow(10.0, exponent);
   const int decimals = std::clamp(1 - magnitude(sigma / unit), 0, 9);
-  const std::string pair =
-      fixed_digits(value / unit, decimals) + " ± " + fixed_digits(sigma / unit, decimals);
-  return "(" + pair + ")" + (plain ? "" : "×" + power_of_ten(exponent));
+  return printed("(%.*f ± %.*f)", decimals, value / unit, decimals, sigma / unit) +
+         (plain ? "" : "×" + power_of_ten(exponent));
 }
 
 namespace {
@@ -363,14 +351,9 @@ TorqueAndSlopes at_state(AttitudeModel& model, size_t own, const PlatformState& 
 Eigen::MatrixXd covariance_of(const Fit& fit, size_t law, Eigen::Index count) {
   const Eigen::MatrixXd shared = fit.shared_posterior();
   std::vector<Eigen::Index> fitted, where;
-  Eigen::Index at = 0;
-  for (const Free& f : fit.best.free) {
-    if (f.per_run) continue;
-    if (f.disturbance == law) {
-      fitted.push_back(f.parameter);
-      where.push_back(at);
-    }
-    ++at;
+  for (const SharedParameter& s : fit.best.shared(law)) {
+    fitted.push_back(static_cast<Eigen::Index>(s.parameter));
+    where.push_back(s.at);
   }
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
   covariance(fitted, fitted) = shared(where, where);

@@ -11,8 +11,6 @@
 
 namespace photorque {
 
-// Short formulas of fitted empirical laws, and physics of similar form.
-
 // "(4.41 ± 0.02)×10⁻⁶": the value and its error with the digits that the error permits. If the
 // error is not positive and finite, the value alone.
 std::string with_error(double value, double sigma);

@@ -65,12 +65,7 @@ std::string in_words(std::string kind) {
 }
 
 std::string label_of(const Trial& t, const Candidates& all) {
-  std::string label;
-  for (const size_t c : t.candidates) {
-    if (!label.empty()) label += " and ";
-    label += all[c].label;
-  }
-  return label;
+  return joined_text(t.candidates, " and ", [&](size_t c) { return all[c].label; });
 }
 
 // The length of an axis is arbitrary: normalises the vector and keeps only its errors across the
@@ -114,25 +109,15 @@ std::vector<std::string> rivals(const std::string& kind, const Trial& chosen,
 std::vector<FittedParameter> fitted_parameters(const Trial& t, size_t disturbance) {
   const Eigen::MatrixXd covariance = t.fit.shared_posterior();
   const auto& parameters = t.fit.best.model.disturbances[disturbance].parameters;
+  const std::vector<SharedParameter> fitted = t.fit.best.shared(disturbance);
   std::vector<FittedParameter> result;
   for (size_t p = 0; p < parameters.size(); ++p) {
-    Eigen::Index shared = 0, at = -1;
-    for (const Free& f : t.fit.best.free) {
-      if (f.per_run) continue;
-      if (f.disturbance == disturbance && f.parameter == static_cast<int>(p)) at = shared;
-      ++shared;
-    }
-    const auto is_free = [&](size_t other) {
-      return parameters[other].key == parameters[p].key &&
-             std::any_of(t.fit.best.free.begin(), t.fit.best.free.end(), [&](const Free& f) {
-               return !f.per_run && f.disturbance == disturbance &&
-                      f.parameter == static_cast<int>(other);
-             });
-    };
-    bool any_free = false;
-    for (size_t other = 0; other < parameters.size(); ++other)
-      any_free = any_free || is_free(other);
-    if (!any_free) continue;
+    const bool key_is_fitted = std::ranges::any_of(fitted, [&](const SharedParameter& s) {
+      return parameters[s.parameter].key == parameters[p].key;
+    });
+    if (!key_is_fitted) continue;
+    const auto own = std::ranges::find(fitted, p, &SharedParameter::parameter);
+    const Eigen::Index at = own == fitted.end() ? -1 : own->at;
     const double unit = unit_of_key(parameters[p].key).to_SI;
     if (result.empty() || result.back().key != parameters[p].key) {
       result.push_back({parameters[p].key, {}, {}});
@@ -175,14 +160,8 @@ void keep_within_bounds(const Candidate& c, std::vector<FittedParameter>& fitted
 std::vector<std::string> combinations(const Trial& t, size_t disturbance) {
   const auto& parameters = t.fit.best.model.disturbances[disturbance].parameters;
   std::map<std::string, std::vector<std::pair<Eigen::Index, double>>> of_key;
-  Eigen::Index shared = 0;
-  for (const Free& f : t.fit.best.free) {
-    if (f.per_run) continue;
-    if (f.disturbance == disturbance) {
-      const Parameter& p = parameters[static_cast<size_t>(f.parameter)];
-      of_key[p.key].emplace_back(shared, p.value);
-    }
-    ++shared;
+  for (const SharedParameter& s : t.fit.best.shared(disturbance)) {
+    of_key[parameters[s.parameter].key].emplace_back(s.at, s.value);
   }
   std::vector<std::string> texts;
   if (of_key.empty()) return texts;
@@ -207,7 +186,7 @@ std::vector<std::string> combinations(const Trial& t, size_t disturbance) {
 }
 
 // Initial states of a disturbance in the first run.
-std::vector<FittedParameter> begins(const Trial& t, size_t disturbance) {
+std::vector<FittedParameter> initial_states(const Trial& t, size_t disturbance) {
   const std::vector<Disturbance>& all = t.fit.best.model.disturbances;
   const PlatformState& initial = t.fit.best.runs.front().initial;
   auto own = initial.extra.begin();
@@ -236,7 +215,7 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
     effect.parameters = fitted_parameters(chosen, chosen.disturbances[i]);
     keep_within_bounds(c, effect.parameters);
     effect.known_together = combinations(chosen, chosen.disturbances[i]);
-    effect.begins = begins(chosen, chosen.disturbances[i]);
+    effect.initial_states = initial_states(chosen, chosen.disturbances[i]);
     for (const EffectKey& key : c.effect.keys) {
       if (key.is_fixed) effect.parameters.insert(effect.parameters.begin(), {key.key, key.start});
     }
@@ -371,23 +350,18 @@ FoundEffect as_fitted(const Trial& chosen, size_t disturbance) {
 std::vector<std::string> contradicted_priors(const Trial& chosen,
                                              const Thresholds::Decision& limits) {
   std::vector<std::string> sentences;
-  size_t shared = 0;
-  for (const Free& f : chosen.fit.best.free) {
-    if (f.per_run) continue;
-    if (shared == chosen.fit.parameters.shared.size()) break;  // not fitted yet
-    const inference::Parameter& p = chosen.fit.parameters.shared[shared++];
+  for (const SharedParameter& s : chosen.fit.best.shared()) {
+    const auto at = static_cast<size_t>(s.at);
+    if (at == chosen.fit.parameters.shared.size()) break;  // not fitted yet
+    const inference::Parameter& p = chosen.fit.parameters.shared[at];
     const auto& found = chosen.disturbances;
-    const bool is_found = std::find(found.begin(), found.end(), f.disturbance) != found.end();
+    const bool is_found = std::find(found.begin(), found.end(), s.disturbance) != found.end();
     const double off = (p.value - p.mean) / p.sigma;
     if (is_found || !p.has_prior() || !(std::abs(off) > limits.doubtful_prior_sigma)) continue;
-    char text[200];
     const bool is_contradicted = std::abs(off) > limits.contradicted_prior_sigma;
-    std::snprintf(
-        text, sizeof text, "%s: stated %.4g ± %.2g, fitted %.4g: %s by %.1f σ", p.name.c_str(),
-        p.mean, p.sigma, p.value,
-        is_contradicted ? "the nominal value is contradicted" : "the nominal value is doubtful",
-        std::abs(off));
-    sentences.emplace_back(text);
+    sentences.push_back(printed(
+        "%s: stated %.4g ± %.2g, fitted %.4g: the nominal value is %s by %.1f σ", p.name.c_str(),
+        p.mean, p.sigma, p.value, is_contradicted ? "contradicted" : "doubtful", std::abs(off)));
   }
   return sentences;
 }
@@ -396,11 +370,9 @@ namespace {
 
 // "a, b (explanation)" of all named effects.
 std::string names_of(const Diagnosis& d) {
-  std::string text;
-  for (const FoundEffect& effect : d.effects) {
-    text += (text.empty() ? "" : "; ") + in_words(effect.kind) + " (" + effect.explanation + ")";
-  }
-  return text;
+  return joined_text(d.effects, "; ", [](const FoundEffect& effect) {
+    return in_words(effect.kind) + " (" + effect.explanation + ")";
+  });
 }
 
 // Sentence for named effects with an unexplained residual.
@@ -409,13 +381,10 @@ std::string mostly_explained(const Diagnosis& d) {
   if (d.holdout && d.holdout->chi2_per_sample_after > 0.0) {
     const double before = d.holdout->chi2_per_sample_before,
                  after = d.holdout->chi2_per_sample_after;
-    char numbers[200];
-    std::snprintf(
-        numbers, sizeof numbers,
+    text += printed(
         ". Held out, it leaves %.3g of the nominal model's residual (rms), %.3g times the "
         "noise: the rest has no known cause",
         std::sqrt(after / before), std::sqrt(after));
-    text += numbers;
   }
   return text + ".";
 }
@@ -445,13 +414,10 @@ std::string sentence_of(const Diagnosis& d) {
   const auto chosen = std::find_if(d.alternatives.begin(), d.alternatives.end(),
                                    [](const Alternative& a) { return a.chosen; });
   if (chosen == d.alternatives.end() || !(before > worth_saying * after)) return text + ".";
-  char times[32];
-  std::snprintf(times, sizeof times, "%.3g", before / after);
-  std::string names = chosen->label;
-  for (const std::string& kind : chosen->kinds) {
-    if (chosen->label.empty()) names += (names.empty() ? "" : " and ") + in_words(kind);
-  }
-  return text + ". Held out, " + names + " lowers χ² by a factor of " + times +
+  const std::string names =
+      chosen->label.empty() ? joined_text(chosen->kinds, " and ", in_words) : chosen->label;
+  return text + ". Held out, " + names + " lowers χ² by a factor of " +
+         printed("%.3g", before / after) +
          (after > 1.0 + leaves_something ? ", and leaves residuals above the noise." : ".");
 }
 

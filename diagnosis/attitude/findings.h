@@ -10,8 +10,6 @@
 
 namespace photorque {
 
-// Parameters of one key for which only a combination is identifiable.
-
 // For three values with their covariance (in the squared unit), each within twice its standard
 // error: the principal combination that is furthest from zero in standard errors. Its largest
 // coefficient is scaled to 1, as "x − 0.99 z = (4.4 ± 0.1)×10⁻¹⁰". Empty if no combination exceeds

@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 
@@ -16,6 +15,10 @@ namespace {
 // Limits in units of the mean moment, except for `least_sigma` [standard errors].
 constexpr double least_difference = 0.1, most_error = 0.05, least_sigma = 5.0;
 
+std::string file_name_of(const std::string& recording) {
+  return std::filesystem::path(recording).filename().string();
+}
+
 struct OneRecording {
   std::string name;
   FreeInertia inertia;
@@ -24,13 +27,11 @@ struct OneRecording {
 std::vector<OneRecording> each_alone(const RecordedData& data) {
   std::map<std::string, std::vector<Observation>> pieces;
   std::vector<std::string> order;
-  for (const auto* runs : {&data.train, &data.held}) {
-    for (const Observation& seen : *runs) {
-      auto& own = pieces[seen.name];
-      if (own.empty()) order.push_back(seen.name);
-      own.push_back(seen);
-    }
-  }
+  for_each_run(data, [&](const Observation& seen) {
+    auto& own = pieces[seen.name];
+    if (own.empty()) order.push_back(seen.name);
+    own.push_back(seen);
+  });
   std::vector<OneRecording> all;
   for (const std::string& name : order) {
     const std::optional<FreeInertia> found = free_inertia(pieces.at(name));
@@ -118,11 +119,7 @@ std::string sentence_of(const std::vector<BodyOfRecordings>& bodies) {
   std::string text =
       "different bodies: the recordings do not agree with one body in one mounting. ";
   for (const BodyOfRecordings& body : bodies) {
-    std::string names;
-    for (const std::string& name : body.recordings) {
-      names += (names.empty() ? "" : ", ") + std::filesystem::path(name).filename().string();
-    }
-    text += names + ": Ixx, Iyy, Izz are ";
+    text += joined_text(body.recordings, ", ", file_name_of) + ": Ixx, Iyy, Izz are ";
     for (size_t k = 0; k < 3; ++k) {
       text += (k > 0 ? ", " : "") + number(body.inertia_relative[k]) + " ± " +
               number(body.inertia_relative_sigma[k]);
@@ -193,12 +190,12 @@ std::vector<InstrumentFinding> clock_findings(const Platform& platform, const Re
   if (platform.has_bearing()) return {};
   constexpr size_t most_rows = 400;
   std::map<std::string, std::vector<Observation>> pieces;
-  for (const auto* runs : {&data.train, &data.held}) {
-    for (const Observation& seen : *runs) {
-      if (seen.has_some_attitude()) return {};
-      pieces[seen.name].push_back(seen.averaged(most_rows));
-    }
-  }
+  bool sees_attitude = false;
+  for_each_run(data, [&](const Observation& seen) {
+    sees_attitude = sees_attitude || seen.has_some_attitude();
+    pieces[seen.name].push_back(seen.averaged(most_rows));
+  });
+  if (sees_attitude) return {};
   constexpr double least_change = 0.05, better = 1.0 / 3.0, good = 0.05;
   std::vector<InstrumentFinding> findings;
   for (const auto& [name, own] : pieces) {
@@ -208,12 +205,11 @@ std::vector<InstrumentFinding> clock_findings(const Platform& platform, const Re
         std::abs(best.value - 1.0) < least_change) {
       continue;
     }
-    char text[400];
-    std::snprintf(text, sizeof text,
-                  "%s: rates and clock are inconsistent: only with rates %.3g times as large, or "
-                  "times %.3g times as long, do the rates change as any inertia makes them",
-                  std::filesystem::path(name).filename().c_str(), best.value, best.value);
-    findings.push_back({"time", "clock_factor", best.value, 0.0, text});
+    findings.push_back(
+        {"time", "clock_factor", best.value, 0.0,
+         printed("%s: rates and clock are inconsistent: only with rates %.3g times as large, or "
+                 "times %.3g times as long, do the rates change as any inertia makes them",
+                 file_name_of(name).c_str(), best.value, best.value)});
   }
   return findings;
 }

@@ -8,8 +8,6 @@
 
 namespace photorque {
 
-// Test of whether all recordings are of one body.
-
 // Groups the recordings, both fitted and held out, by body. Each recording alone determines moments
 // of inertia up to their scale (attitude/estimation/free_inertia.h). Two recordings are of
 // different bodies if a moment differs by five standard errors and by a tenth of the mean moment.
@@ -19,8 +17,6 @@ std::vector<BodyOfRecordings> different_bodies(const Platform& platform, const R
 
 // One sentence that lists the recordings of each body; empty without bodies.
 std::string sentence_of(const std::vector<BodyOfRecordings>& bodies);
-
-// Consistency test of the rates of a free body and the clock of the recording.
 
 // Rates obey ω' = −I⁻¹ (ω × I ω), which is quadratic in ω. If all rates are too large by a factor,
 // or the clock is too fast by it, no inertia fits. The exception is a body with an axis of

@@ -73,10 +73,7 @@ Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs,
                     const Thresholds& limits) {
   Hypothesis h = fitted.best;
   std::erase_if(h.free, [](const Free& f) { return !f.per_run; });
-  std::vector<double> own;
-  for (const Free& f : h.free) own.push_back(f.mean);
-  h.runs.clear();
-  for (const Observation& seen : runs) h.runs.push_back({first_state(h.model, seen), own});
+  h.runs = starts_from_data(h, runs);
   choose_starts(h, runs);
   FitSettings settings;
   settings.windows = limits.fitting.first_windows;
@@ -99,17 +96,11 @@ Holdout compare_holdout(const Fit& before, const Fit& after, const std::vector<O
 
 RecordingSeries series_of(const Fit& before, const Fit& after, const Observation& seen,
                           size_t run) {
-  PredictionOptions options;
-  options.keep_residuals = true;
-  const auto propagated = [&](const Fit& fit) {
-    const Dynamics dynamics(fit.best.model_of(run, seen));
-    return predict(dynamics, fit.best.runs[run].initial, seen, {}, options);
-  };
   RecordingSeries result;
   result.recording = seen.name;
   const double max_gap_s = 5.0 * seen.duration_s() / static_cast<double>(seen.blocks());
   try {
-    const Prediction a = propagated(before), b = propagated(after);
+    const Prediction a = residuals_of(before, run, seen), b = residuals_of(after, run, seen);
     for (Eigen::Index k = 0; k < channel_count; ++k) {
       const ChannelTraits& traits = channel_traits(static_cast<int>(k));
       const bool is_scalar = k >= vector_channels;

@@ -18,17 +18,9 @@ struct Curve {
 // Value and slope at one reading of a cubic fitted to `reach` readings on each side.
 std::pair<double, double> local_cubic(const AxisReadings& read, size_t at, size_t reach) {
   const size_t first = at - std::min(at, reach), last = std::min(read.row.size(), at + reach + 1);
-  const auto count = static_cast<Eigen::Index>(last - first);
   const double span_s = read.time_s[last - 1] - read.time_s[first];
-  Eigen::MatrixXd powers(count, 4);
-  Eigen::VectorXd values(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const size_t k = first + static_cast<size_t>(i);
-    const double since = (read.time_s[k] - read.time_s[at]) / span_s;
-    powers.row(i) << 1.0, since, since * since, since * since * since;
-    values[i] = read.value[k] - read.value[at];
-  }
-  const Eigen::VectorXd c = least_squares(powers, values).solution;
+  const Eigen::Vector4d c =
+      fitted_cubic(read, first, last, read.time_s[at], span_s, read.value[at]);
   return {read.value[at] + c[0], c[1] / span_s};
 }
 
@@ -147,12 +139,7 @@ std::vector<Strength> strengths_along(const std::vector<Curve>& curves, const At
     for (size_t p = 0; p < all[c].scale.size(); ++p) {
       if (!all[c].is_strength(p) || all[c].start.stage == Stage::measurement) continue;
       AttitudeModel model = stated;
-      model.disturbances = {all[c].start};
-      for (size_t other = 0; other < all[c].scale.size(); ++other) {
-        if (all[c].is_strength(other)) {
-          model.disturbances[0].parameters[other].value = other == p ? all[c].scale[p] : 0.0;
-        }
-      }
+      model.disturbances = {all[c].with_strength_alone(p)};
       Strength strength{c, p};
       for (const Curve& curve : curves) strength.rates.push_back(impulse_of(model, curve));
       strengths.push_back(std::move(strength));
@@ -177,16 +164,16 @@ LawsOfCurve laws_of_curve(const Trial& nominal, const Candidates& all,
   LawsOfCurve result;
   std::vector<Curve> curves;
   std::vector<Eigen::VectorXd> rates;
-  result.begins = starts_from_data(nominal.fit.best, runs);
+  result.starts = starts_from_data(nominal.fit.best, runs);
   for (size_t run = 0; run < runs.size(); ++run) {
     Curve curve = curve_of(runs[run], stated.platform.axis);
     if (curve.time_s.empty()) return {};
     const Eigen::Map<const Eigen::VectorXd> rate(curve.rate_rad_s.data(),
                                                  static_cast<Eigen::Index>(curve.time_s.size()));
     rates.emplace_back(rate - impulse_of(stated, curve));
-    PlatformState& begin = result.begins[run].initial;
-    begin.rate_body_rad_s = curve.rate_rad_s.front() * stated.platform.axis;
-    begin.lab_from_body = Eigen::AngleAxisd(curve.angle_rad.front(), stated.platform.axis);
+    PlatformState& initial = result.starts[run].initial;
+    initial.rate_body_rad_s = curve.rate_rad_s.front() * stated.platform.axis;
+    initial.lab_from_body = Eigen::AngleAxisd(curve.angle_rad.front(), stated.platform.axis);
     curves.push_back(std::move(curve));
   }
   std::vector<Strength> strengths = strengths_along(curves, stated, all, candidates);

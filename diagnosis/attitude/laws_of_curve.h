@@ -17,7 +17,7 @@ namespace photorque {
 // strength beyond its physical bounds is set to zero, and the others are recomputed.
 struct LawsOfCurve {
   inference::Members<Start> members;  // with a strength that is not zero
-  std::vector<RunStart> begins;
+  std::vector<RunStart> starts;
 };
 
 // `nominal`: trial of the nominal model; its parameters are set to the values that the experiment

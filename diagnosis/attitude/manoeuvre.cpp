@@ -124,9 +124,8 @@ double expected_lead(const Trial& truth, const Rival& rival, const Candidates& a
     std::vector<RunStart> starts = rival.fitted.fit.best.runs;
     starts.push_back(starts.front());
     starts.back().initial = start;
-    FitSettings growing;
-    growing.windows = all.limits.fitting.added_windows;
-    const Trial both = refit(rival.fitted, all, runs, starts, growing);
+    const Trial both =
+        refit(rival.fitted, all, runs, starts, {.windows = all.limits.fitting.added_windows});
     if (!both.fit.converged) return not_known;
     const double more =
         both.fit.chi2 - rival.fitted.fit.chi2;  // includes the cost of shifted priors

@@ -8,6 +8,7 @@
 #include "attitude/estimation/fit.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
+#include "core/text/format.h"
 #include "diagnosis/attitude/cross_validation.h"
 #include "diagnosis/attitude/domain.h"
 #include "diagnosis/attitude/holdout.h"
@@ -16,18 +17,12 @@
 namespace photorque {
 namespace {
 
-void use_noise(const NoiseLevels& noise, RecordedData& data) {
-  for (auto* runs : {&data.train, &data.held}) {
-    for (Observation& seen : *runs) seen.noise = noise;
-  }
-}
-
 // Treats the residual of a fit to the train runs as noise. Its level is estimated separately in
 // each of `parts` parts of a run; 0: one level for all runs.
 void use_rest(const Fit& fit, const NoiseLevels& own, Remainder remainder, size_t parts,
               RecordedData& data) {
   const std::vector<Prediction> residuals = residuals_of(fit, data.train);
-  use_noise(with_discrepancy(residuals, data.train, own, remainder), data);
+  set_noise(with_discrepancy(residuals, data.train, own, remainder), data);
   if (parts > 0) set_profiles(residuals, parts, data.train);
 }
 
@@ -108,7 +103,7 @@ class Contest {
   Contender winner() {
     const Contender* best = &contenders_.front();
     for (const Contender& other : contenders_) {
-      const double gain = gain_sigma(best->chi2, other.chi2);
+      const double gain = inference::gain_sigma(best->chi2, other.chi2);
       if (gain > (halves_held_out(*best, other) ? 0.0 : limits_.min_rival_sigma)) best = &other;
     }
     const Contender won = pruned(*best);
@@ -152,9 +147,8 @@ class Contest {
       std::ranges::sort(theirs);
       std::ranges::sort(ours);
       if (std::ranges::includes(theirs, ours) || !is_as_good(other, best)) continue;
-      std::string text;
-      for (const size_t c : theirs) text += (text.empty() ? "" : " + ") + answer_.all[c].label;
-      if (!text.empty()) sets.insert(text);
+      if (theirs.empty()) continue;
+      sets.insert(joined_text(theirs, " + ", [&](size_t c) { return answer_.all[c].label; }));
     }
     return {sets.begin(), sets.end()};
   }
@@ -188,12 +182,13 @@ class Contest {
     if (with.held_chi2 > limits_.max_held_growth * without.held_chi2 + by_chance * scatter) {
       return 0.0;
     }
-    return gain_sigma(without.chi2, with.chi2) * (halves_held_out(without, with) ? confirmed : 1.0);
+    return inference::gain_sigma(without.chi2, with.chi2) *
+           (halves_held_out(without, with) ? confirmed : 1.0);
   }
 
   // Whether `one` predicts the segments not significantly worse than `other` does.
   bool is_as_good(const Contender& one, const Contender& other) const {
-    return gain_sigma(one.chi2, other.chi2) < limits_.min_rival_sigma;
+    return inference::gain_sigma(one.chi2, other.chi2) < limits_.min_rival_sigma;
   }
 
   // Whether the trial has a drag with a non-integer power of the rate. Such a drag may imitate a
@@ -256,14 +251,9 @@ class Contest {
   }
 
   Trial trial_without(const Trial& trial, size_t which) const {
-    inference::Members<Start> members;
-    const auto terms = terms_of(trial);
-    for (size_t i = 0; i < terms.size(); ++i) {
-      if (i != which) members.push_back({terms[i], {}});
-    }
     // Removing this candidate may move the other parameters far.
     const inference::Effort growing{.windows = answer_.all.limits.fitting.diverged_windows};
-    return domain_.assemble(trial, members, train_, growing);
+    return domain_.assemble(trial, inference::members_of(terms_of(trial), which), train_, growing);
   }
 
   const Answer& answer_;
@@ -403,14 +393,14 @@ std::optional<Answer> identify_with_discrepancy(const NominalModel& nominal, Rec
   // where it is largest.
   const size_t parts = laws != nullptr ? options.limits.discrepancy.segments : 0;
   std::optional<Answer> best;
-  use_noise(noise_from_spread(data.train, own), data);
+  set_noise(noise_from_spread(data.train, own), data);
   Fit left_by = laws != nullptr ? laws->fit : fit_nominal(nominal, data.train, options.limits);
   for (int round = 0; round < options.limits.discrepancy.max_rounds; ++round) {
     if (!std::isfinite(left_by.chi2)) break;
     const NoiseLevels before = data.train.front().noise;
     use_rest(left_by, own, Remainder::white, parts, data);
     if (round > 0 && !is_quieter(data.train.front().noise, before)) break;
-    tell(options, "naming effects, with the residual counted as noise");
+    report_step(options, "naming effects, with the residual counted as noise");
     const Among among = among_with_discrepancy(nominal, data);
     const Candidates all = candidates_among(among, nominal, data.train, options.limits);
     const Fit nominal_fit = fit_nominal(nominal, data.train, options.limits);

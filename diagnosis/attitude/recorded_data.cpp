@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "attitude/estimation/conventions.h"
@@ -18,6 +17,14 @@
 #include "diagnosis/attitude/holdout.h"
 
 namespace photorque {
+
+void set_noise(const NoiseLevels& noise, RecordedData& data) {
+  for_each_run(data, [&](Observation& seen) { seen.noise = noise; });
+}
+
+void set_noise(int channel, const ChannelNoise& noise, RecordedData& data) {
+  for_each_run(data, [&](Observation& seen) { seen.noise.set(channel, noise); });
+}
 
 namespace {
 
@@ -56,23 +63,21 @@ void report_unused_columns(const NamedRecording& r, const NominalModel& nominal,
                            const std::set<std::string>& read_elsewhere,
                            std::vector<std::string>& warnings) {
   const Platform& platform = nominal.model.platform;
-  std::string names, undeclared;
+  std::vector<std::string> undeclared;
   const MotionColumns motion(r.recording, platform, r.name);
   for (int s = first_field; s < first_place; ++s) {
     if (is_declared(nominal.sensors, s) || !motion.has_scalar(static_cast<Scalar>(s))) continue;
-    undeclared +=
-        (undeclared.empty() ? "" : ", ") + std::string(channel_traits(vector_channels + s).column);
+    undeclared.emplace_back(channel_traits(vector_channels + s).column);
   }
   if (!undeclared.empty()) {
-    warnings.push_back(r.name + ": " + undeclared +
+    warnings.push_back(r.name + ": " + joined_text(undeclared, ", ") +
                        " are not compared: the experiment has no [sensors.accelerometer] or "
                        "[sensors.magnetometer] for them");
   }
-  for (const std::string& column : motion.unused()) {
-    if (read_elsewhere.contains(column)) continue;
-    names += (names.empty() ? "" : ", ") + column;
-  }
-  if (!names.empty()) warnings.push_back(r.name + ": columns that are not used: " + names);
+  std::vector<std::string> unused = motion.unused();
+  std::erase_if(unused, [&](const std::string& column) { return read_elsewhere.contains(column); });
+  if (unused.empty()) return;
+  warnings.push_back(r.name + ": columns that are not used: " + joined_text(unused, ", "));
 }
 
 // Warns of an assumed sequence of angles if no rates are recorded that could test it.
@@ -122,16 +127,6 @@ double value_at(const Observation& seen, int channel, size_t block) {
   return turn_vector(seen.attitude[block])[channel];
 }
 
-void leave_out_block(int channel, size_t block, Observation& seen) {
-  if (channel >= vector_channels) {
-    seen.scalar[static_cast<size_t>(channel - vector_channels)].rows[block] = 0.0;
-  } else if (channel >= 3) {
-    seen.gyro_rows[block][channel - 3] = 0.0;
-  } else {
-    seen.attitude_rows[block] = 0.0;
-  }
-}
-
 // A counter at rest repeats the same rounding error in every reading, so its readings are not
 // independent. Only a few evenly spaced ones of a long sequence of identical values are kept.
 void thin_repetitions(Observation& seen) {
@@ -152,7 +147,7 @@ void thin_repetitions(Observation& seen) {
       const size_t count = last - first;
       for (size_t k = 0; count > most && k < count; ++k) {
         if (k * most / count == (k + 1) * most / count) {
-          leave_out_block(channel, read[first + k], seen);
+          drop_reading(channel, read[first + k], seen);
         }
       }
       first = last;
@@ -207,10 +202,6 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
   return all;
 }
 
-void append_to(std::vector<Observation>& to, std::vector<Observation> from) {
-  std::move(from.begin(), from.end(), std::back_inserter(to));
-}
-
 // The first block of the last part of a run; `fraction` counts only blocks with readings.
 size_t cut_at(const Observation& seen, double fraction) {
   std::vector<size_t> reading;
@@ -255,13 +246,10 @@ NoiseLevels noise_of(const Sensors& sensors, const std::vector<Observation>& run
     const std::optional<double> level = reading_level(runs, channel);
     if (!level) continue;
     noise.set(channel, {*level, 0.0, 0.0});
-    char text[200];
-    std::snprintf(
-        text, sizeof text,
-        "%s: no noise is stated; neighbouring readings scatter by %.3g %s, which was used",
-        channel_traits(channel).name, *level * channel_traits(channel).per_SI,
-        channel_traits(channel).unit);
-    warnings.emplace_back(text);
+    const ChannelTraits& traits = channel_traits(channel);
+    warnings.push_back(
+        printed("%s: no noise is stated; neighbouring readings scatter by %.3g %s, which was used",
+                traits.name, *level * traits.per_SI, traits.unit));
   }
   return noise;
 }
@@ -276,16 +264,13 @@ RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecor
     if (holdouts.empty()) {
       hold_out(std::move(segments), options.holdout_fraction, data);
     } else {
-      append_to(data.train, std::move(segments));
+      std::ranges::move(segments, std::back_inserter(data.train));
     }
   }
   for (auto& segments : observe_all(holdouts, nominal, options, data.warnings)) {
-    append_to(data.held, std::move(segments));
+    std::ranges::move(segments, std::back_inserter(data.held));
   }
-  const NoiseLevels noise = noise_of(nominal.sensors, data.train, data.warnings);
-  for (auto* runs : {&data.train, &data.held}) {
-    for (Observation& seen : *runs) seen.noise = noise;
-  }
+  set_noise(noise_of(nominal.sensors, data.train, data.warnings), data);
   return data;
 }
 
@@ -361,9 +346,7 @@ bool use_noise(const NoiseFindings& findings, RecordedData& data) {
     if (found.colour_found) data.instruments.push_back(colour_finding(k, found));
     if (!found.level_found && !found.colour_found) continue;
     changed = true;
-    for (auto* runs : {&data.train, &data.held}) {
-      for (Observation& seen : *runs) seen.noise.set(k, found.noise);
-    }
+    set_noise(k, found.noise, data);
   }
   return changed;
 }
@@ -383,10 +366,7 @@ bool robustify_noise(const Fit& near, const Thresholds& limits, RecordedData& da
     if (!tail) continue;
     changed = true;
     data.instruments.push_back(tail_finding(k, *tail));
-    const ChannelNoise now{deviation_level(robustified, data.train, k), 0.0, 0.0};
-    for (auto* runs : {&data.train, &data.held}) {
-      for (Observation& seen : *runs) seen.noise.set(k, now);
-    }
+    set_noise(k, {deviation_level(robustified, data.train, k), 0.0, 0.0}, data);
   }
   int64_t held_in_bursts = 0;
   const Fit held = propagate_model(near, data.held, limits);
@@ -446,9 +426,7 @@ bool estimate_noise_again(const Fit& explained, const Thresholds& limits, Record
   }
   if (!data.noise_before) return false;
   RecordedData again = data;
-  for (auto* runs : {&again.train, &again.held}) {
-    for (Observation& seen : *runs) seen.noise = *data.noise_before;
-  }
+  set_noise(*data.noise_before, again);
   again.noise_before.reset();
   std::erase_if(again.instruments, [](const InstrumentFinding& finding) {
     return finding.what == "noise_level" || finding.what == "noise_correlation_time_s";
@@ -487,18 +465,14 @@ void report_bias_drift(const BiasHistory& history, std::vector<InstrumentFinding
 
 void subtract_bias_drift(RecordedData& data) {
   std::vector<const Observation*> pieces;
-  for (const auto* runs : {&data.train, &data.held}) {
-    for (const Observation& seen : *runs) pieces.push_back(&seen);
-  }
+  for_each_run(data, [&](const Observation& seen) { pieces.push_back(&seen); });
   for (const BiasHistory& history : bias_histories(pieces)) {
-    for (auto* runs : {&data.train, &data.held}) {
-      for (Observation& seen : *runs) {
-        if (seen.name != history.recording) continue;
-        for (size_t i = 0; i < seen.blocks(); ++i) {
-          seen.gyro_rad_s[i] -= history.at(seen.time_s[i]);
-        }
+    for_each_run(data, [&](Observation& seen) {
+      if (seen.name != history.recording) return;
+      for (size_t i = 0; i < seen.blocks(); ++i) {
+        seen.gyro_rad_s[i] -= history.at(seen.time_s[i]);
       }
-    }
+    });
     report_bias_drift(history, data.instruments);
   }
 }

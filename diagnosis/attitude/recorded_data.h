@@ -1,7 +1,7 @@
 // The prepared recordings of a diagnosis: fitted data, held-out data, rejected readings.
 #pragma once
 
-#include <cstdio>
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -22,6 +22,16 @@ struct RecordedData {
   std::vector<std::string> warnings;
 };
 
+// Calls `action` with every fitted and held-out run.
+template <class Data, class Action>
+void for_each_run(Data& data, const Action& action) {
+  for (auto* runs : {&data.train, &data.held}) std::ranges::for_each(*runs, action);
+}
+
+// Sets the noise of all runs, or of one channel of all runs.
+void set_noise(const NoiseLevels& noise, RecordedData& data);
+void set_noise(int channel, const ChannelNoise& noise, RecordedData& data);
+
 // Checks conventions and reads the data; without holdouts the end of each recording is held out.
 RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
                        const std::vector<NamedRecording>& holdouts, const DiagnoseOptions& options);
@@ -41,8 +51,6 @@ Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& 
 // lacks. It is replaced if the readings are quieter or less correlated about the explanation.
 // Returns whether the noise changed.
 bool estimate_noise_again(const Fit& explained, const Thresholds& limits, RecordedData& data);
-
-// Gyro bias that drifts within a recording.
 
 // Removes the drift from the gyro readings, keeps their mean, and reports it among the instruments.
 // Does nothing if a constant bias per recording suffices.

@@ -102,11 +102,11 @@ class Refinement {
   Trial exchanged(const Trial& trial, const EmpiricalLaw& law, const Disturbance& start,
                   const std::vector<Observation>& runs) {
     all_.list.push_back(candidate_of(law));
-    FitSettings settings = until_convergence();
+    inference::Options options = until_convergence();
     if (trial.fit.chi2_per_sample() > all_.limits.diverged_chi2_per_sample) {
-      settings.windows = all_.limits.fitting.diverged_windows;
+      options.windows = all_.limits.fitting.diverged_windows;
     }
-    return exchange(trial, all_, which_, all_.size() - 1, start, runs, settings);
+    return exchange(trial, all_, which_, all_.size() - 1, start, runs, options);
   }
 
   // Fits tables of increasing resolution to averages, then the finest table to all readings.
@@ -147,11 +147,8 @@ class Refinement {
 
  private:
   // Iterates to convergence as long as the fit can reach the χ² of the previous law.
-  FitSettings until_convergence() const {
-    FitSettings settings;
-    settings.max_iterations = 40;
-    settings.worth_chi2 = worth_chi2_;
-    return settings;
+  inference::Options until_convergence() const {
+    return {.max_iterations = 40, .worth_chi2 = worth_chi2_};
   }
 
   size_t which_;

@@ -17,16 +17,10 @@ namespace {
 // Violation of physical bounds by the trial's `which`-th law [standard errors]; 0 within them.
 double beyond_physics(const Trial& trial, const Candidates& all, size_t which) {
   const Candidate& c = all[trial.candidates[which]];
-  const std::vector<Parameter>& found =
-      trial.fit.best.model.disturbances[trial.disturbances[which]].parameters;
-  const std::vector<Eigen::Index> where = shared_indices(trial, which);
   const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
   double farthest = 0.0;
-  size_t k = 0;
-  for (size_t p = 0; p < c.scale.size(); ++p) {
-    if (!c.is_fitted(p)) continue;
-    const Eigen::Index at = where[k++];
-    const double beyond = std::max(c.lowest[p] - found[p].value, found[p].value - c.highest[p]);
+  for (const auto& [disturbance, p, at, value] : fitted_numbers(trial, which)) {
+    const double beyond = std::max(c.lowest[p] - value, value - c.highest[p]);
     if (beyond > 0.0) farthest = std::max(farthest, beyond / std::sqrt(covariance(at, at)));
   }
   return farthest;
@@ -51,12 +45,8 @@ std::optional<size_t> superfluous(const Trial& trial, const Candidates& all, dou
 Trial without_superfluous(Trial trial, const AttitudeDomain& domain, const Candidates& all,
                           const std::vector<Observation>& runs, double needed = 2.0) {
   while (const std::optional<size_t> least = superfluous(trial, all, needed)) {
-    inference::Members<Start> rest;
-    const auto terms = domain.terms_of(trial);
-    for (size_t i = 0; i < terms.size(); ++i) {
-      if (i != *least) rest.push_back({terms[i], {}});
-    }
-    Trial fewer = domain.assemble(trial, rest, runs, inference::until_convergence(all.limits));
+    Trial fewer = domain.assemble(trial, inference::members_of(domain.terms_of(trial), *least),
+                                  runs, inference::until_convergence(all.limits));
     if (!std::isfinite(fewer.fit.chi2)) break;
     trial = std::move(fewer);
   }
@@ -108,7 +98,7 @@ std::optional<Trial> fit_from_curve(const Trial& nominal, const std::vector<size
                                     const std::vector<Observation>& runs) {
   const LawsOfCurve curve = laws_of_curve(nominal, all, laws, runs);
   if (curve.members.empty()) return std::nullopt;
-  const Trial stated = domain.with_initial_conditions(as_stated(nominal), curve.begins);
+  const Trial stated = domain.with_initial_conditions(as_stated(nominal), curve.starts);
   std::optional<Trial> best;
   for (const std::vector<double>& windows :
        {std::vector<double>{1.0}, std::vector<double>{0.1, 0.3, 1.0}}) {
@@ -186,18 +176,17 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
   }
   const AttitudeDomain domain(all);
   inference::Members<Start> members;
-  std::vector<size_t> laws;
   for (size_t c = 0; c < all.size(); ++c) {
     if (!all[c].is_linear() || all[c].empirical()) continue;
     const bool is_law = braking_power(all[c], model) || is_restoring(all[c], model) ||
                         all[c].effect.how.steady || all[c].start.stage == Stage::measurement;
     if (!is_law || !all[c].has_linear_strength()) continue;
     members.push_back({{c, domain.start_of(c)}, {}});
-    laws.push_back(c);
   }
   if (members.empty()) return std::nullopt;
   const Trial nominal = nominal_trial(nominal_fit, all);
-  const std::optional<Trial> by_curve = fit_from_curve(nominal, laws, domain, all, data.train);
+  const std::optional<Trial> by_curve =
+      fit_from_curve(nominal, inference::candidates_of(members), domain, all, data.train);
   if (by_curve && is_consistent_with_noise(by_curve->fit, data)) return by_curve;
   std::optional<Trial> found = fit_growing(nominal, members, domain, all, data);
   if (by_curve && by_curve->fit.chi2 < nominal_fit.chi2 &&
@@ -245,11 +234,10 @@ std::vector<Trial> fit_sets_of_brakes(const Trial& nominal, const Trial& found,
     members.insert(members.end(), sets[i].begin(), sets[i].end());
     const inference::Effort growing{.windows = all.limits.fitting.diverged_windows};
     trials[i] = domain.assemble(found, members, data.train, growing);
-    std::vector<size_t> laws;
-    for (const auto& member : members) laws.push_back(member.term.candidate);
-    const LawsOfCurve curve = laws_of_curve(nominal, all, laws, data.train);
+    const LawsOfCurve curve =
+        laws_of_curve(nominal, all, inference::candidates_of(members), data.train);
     if (curve.members.size() != members.size()) return;
-    const Trial stated = domain.with_initial_conditions(as_stated(nominal), curve.begins);
+    const Trial stated = domain.with_initial_conditions(as_stated(nominal), curve.starts);
     Trial by_curve = domain.assemble(stated, curve.members, data.train, {});
     if (by_curve.fit.chi2 < trials[i].fit.chi2) trials[i] = std::move(by_curve);
   });

@@ -35,7 +35,7 @@ Thresholds light_thresholds() {
   limits.leaders.max_leaders = 4;
   limits.fitting.slow_blocks = 400;
   limits.fitting.trial_iterations = 10;
-  limits.fitting.patient_iterations = 20;
+  limits.fitting.leader_iterations = 20;
   limits.search.max_effects = 3;
   return limits;
 }

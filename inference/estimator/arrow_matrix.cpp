@@ -9,6 +9,11 @@
 
 namespace photorque::inference {
 
+Eigen::VectorXd inverse_roots(const Eigen::VectorXd& diagonal, double otherwise) {
+  return diagonal.cwiseSqrt().unaryExpr(
+      [&](double root) { return root > 0.0 ? 1.0 / root : otherwise; });
+}
+
 SumsOfRows::SumsOfRows(Eigen::Index parameters)
     : width_(parameters + 1),
       rows_(RowMatrix::Zero(capacity, width_)),
@@ -155,11 +160,7 @@ double ArrowMatrix::log_determinant() const {
 }
 
 Eigen::MatrixXd ArrowMatrix::shared_information() const {
-  Eigen::MatrixXd left = shared_;
-  for (size_t run = 0; run < own_.size(); ++run) {
-    left -= cross_[run] * eliminated(own_[run].ldlt(), cross_[run]);
-  }
-  return left;
+  return shared_sums(Eigen::VectorXd::Zero(size()), 0.0, 0).matrix;
 }
 
 NormalSums ArrowMatrix::shared_sums(const Eigen::VectorXd& gradient, double chi2,

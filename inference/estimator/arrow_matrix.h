@@ -7,10 +7,13 @@
 
 namespace photorque::inference {
 
-// Sums over the data for one least-squares step.
+// 1/√d for each number d of a diagonal, which scales a matrix to a unit diagonal; `otherwise` where
+// d is not positive.
+Eigen::VectorXd inverse_roots(const Eigen::VectorXd& diagonal, double otherwise = 1.0);
 
-// Residuals are r = (measured − predicted)/noise, with unit variance for a good fit, and slopes are
-// J = ∂(predicted/noise)/∂θ: to first order a step δ changes r into r − J δ.
+// Sums over the data for one least-squares step. Residuals are r = (measured − predicted)/noise,
+// with unit variance for a good fit, and slopes are J = ∂(predicted/noise)/∂θ: to first order a
+// step δ changes r into r − J δ.
 struct NormalSums {
   Eigen::MatrixXd matrix;    // Jᵀ J, both triangles
   Eigen::VectorXd gradient;  // Jᵀ r, which is −½ ∂χ²/∂θ

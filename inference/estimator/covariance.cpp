@@ -12,12 +12,6 @@ namespace {
 
 constexpr double rounding = 1e-14;  // limit of the information on a unit diagonal, per parameter
 
-// Inverse conditional standard error of each parameter; 1 without information.
-Eigen::VectorXd scale_of(const Eigen::MatrixXd& information) {
-  return information.diagonal().cwiseSqrt().unaryExpr(
-      [](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
-}
-
 // Marginal covariance of the determined combinations. `scaled` has a unit diagonal. If all
 // parameters are determined, the matrix is left empty.
 Covariance without_unknown(const Eigen::MatrixXd& scaled) {
@@ -66,7 +60,7 @@ Covariance covariance_of(const Eigen::MatrixXd& information) {
     for (Eigen::Index i = 0; i < information.rows(); ++i) nothing.undetermined.push_back(i);
     return nothing;
   }
-  const Eigen::VectorXd scale = scale_of(information);
+  const Eigen::VectorXd scale = inverse_roots(information.diagonal());
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   const Eigen::LDLT<Eigen::MatrixXd> ldlt = scaled.ldlt();
   // The smallest pivot bounds the smallest eigenvalue from above and, except for contrived
@@ -85,7 +79,7 @@ Covariance covariance_of(const Eigen::MatrixXd& information) {
 }
 
 Eigen::MatrixXd posterior_of(const Eigen::MatrixXd& information) {
-  const Eigen::VectorXd scale = scale_of(information);
+  const Eigen::VectorXd scale = inverse_roots(information.diagonal());
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   const Eigen::MatrixXd inverse =
       solve_symmetric(scaled, Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));

@@ -37,8 +37,6 @@ struct Strengths {
 double log_strength_evidence(const Strengths& strengths, const Eigen::MatrixXd& covariance,
                              size_t effects, const Thresholds::Evidence& limits = {});
 
-// Predictions of held-out runs.
-
 // Prediction of the held-out runs by a trial that is fitted to the train runs only. It includes the
 // uncertainty of the parameters: χ² is minimised over the nuisance parameters of the held-out runs
 // and over the parameters, with the posterior of the train fit as prior. This minimum is the χ² of

@@ -14,8 +14,7 @@ namespace {
 // Parameters in `held` stay fixed.
 Eigen::VectorXd damped_step(const SumsOfRuns& sums, const Eigen::VectorXd& damped, double damping,
                             const std::vector<Eigen::Index>& held) {
-  const Eigen::VectorXd scale = sums.matrix.diagonal().cwiseSqrt().unaryExpr(
-      [](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
+  const Eigen::VectorXd scale = inverse_roots(sums.matrix.diagonal());
   ArrowMatrix scaled = sums.matrix.scaled(scale);
   for (Eigen::Index i = 0; i < scale.size(); ++i) scaled.add_to_diagonal(i, damping * damped[i]);
   Eigen::VectorXd right = scale.cwiseProduct(sums.gradient);
@@ -73,8 +72,10 @@ Eigen::VectorXd step_within_bounds(const SumsOfRuns& sums, const Parameters& par
 // Extrapolates the fall of χ²: whether it can reach the useful limit, and whether it stalls.
 class ConvergenceForecast {
  public:
-  ConvergenceForecast(double worth_chi2, double creep, int max_iterations)
-      : worth_chi2_(worth_chi2), creep_(creep), max_iterations_(max_iterations) {}
+  ConvergenceForecast(double worth_chi2, double min_relative_decrease, int max_iterations)
+      : worth_chi2_(worth_chi2),
+        min_relative_decrease_(min_relative_decrease),
+        max_iterations_(max_iterations) {}
 
   // Call after each step, accepted or not. The logarithm of χ² is assumed to fall at most twice as
   // fast per remaining step as over the last steps.
@@ -88,7 +89,7 @@ class ConvergenceForecast {
   // Call after is_out_of_reach(). A good fit is iterated to convergence.
   bool is_stalling(const SumsOfRuns& sums) const {
     constexpr double misfit_per_sample = 1.2;
-    if (fallen_.size() <= memory || fall() >= creep_) return false;
+    if (fallen_.size() <= memory || fall() >= min_relative_decrease_) return false;
     return sums.chi2 > misfit_per_sample * static_cast<double>(sums.samples);
   }
 
@@ -100,7 +101,7 @@ class ConvergenceForecast {
     return std::log(fallen_[fallen_.size() - 1 - memory] / fallen_.back()) / memory;
   }
 
-  double worth_chi2_, creep_;
+  double worth_chi2_, min_relative_decrease_;
   int max_iterations_;
   std::vector<double> fallen_;
 };
@@ -179,7 +180,7 @@ class Fitter {
                               : options_.max_iterations;
     const double least_gain = is_brief ? gain_in_first_windows : options_.min_gain;
     ConvergenceForecast outlook(is_whole ? options_.worth_chi2 : infinity,
-                                is_whole ? options_.creep : 0.0, most);
+                                is_whole ? options_.min_relative_decrease : 0.0, most);
     // After a step that gains as predicted, the next one is likely to be accepted. Its derivatives,
     // which include χ², are then requested at once.
     bool is_on_course = false, was_refused = false;
@@ -284,9 +285,11 @@ void Options::check() const {
   if (!(min_gain_fraction >= 0.0 && min_gain_fraction < 1.0)) {
     refuse("min_gain_fraction", min_gain_fraction, "a fraction in [0, 1)");
   }
-  if (!(creep >= 0.0)) refuse("creep", creep, "a number >= 0");
-  if (!(initial_damping >= 0.0)) refuse("initial_damping", initial_damping, "a number >= 0");
-  if (!(min_damping >= 0.0)) refuse("min_damping", min_damping, "a number >= 0");
+  for (const auto& [key, value] : {std::pair{"min_relative_decrease", min_relative_decrease},
+                                   {"initial_damping", initial_damping},
+                                   {"min_damping", min_damping}}) {
+    if (!(value >= 0.0)) refuse(key, value, "a number >= 0");
+  }
   if (!(max_damping > 0.0)) refuse("max_damping", max_damping, "a number > 0");
 }
 

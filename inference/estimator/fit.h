@@ -46,7 +46,7 @@ struct Options {
   double worth_chi2 = infinity;
   // Stops a fit of whole runs that is bad and stalls: χ² per sample above 1.2, and a mean fall per
   // step over the last six steps below this fraction. 0: off.
-  double creep = 0.0;
+  double min_relative_decrease = 0.0;
   double initial_damping = 1e-9;  // λ, ≥ 0
   double min_damping = 0.0;       // ≥ 0; fixes undetermined combinations at their values
   double max_damping = 1e9;       // beyond it no step lowers χ²

@@ -14,8 +14,7 @@ class BoundedStep {
   BoundedStep(const ArrowMatrix& information, const Parameters& at)
       : information_(information),
         at_(at),
-        scale_(information.diagonal().cwiseSqrt().unaryExpr(
-            [](double s) { return s > 0.0 ? 1.0 / s : 1.0; })),
+        scale_(inverse_roots(information.diagonal())),
         place_(static_cast<size_t>(at.size()), Place::free),
         step_(Eigen::VectorXd::Zero(at.size())) {}
 

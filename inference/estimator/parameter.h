@@ -47,8 +47,6 @@ struct Parameters {
   }
 };
 
-// Projection onto the bounds after a fit without bounds.
-
 // The step δ from the optimum `at` to within all bounds that raises χ² least: min δᵀ H δ with
 // lowest ≤ θ + δ ≤ highest, where H is the positive definite information there. Correlated
 // parameters move too: if only the sum of several is ill determined, bringing one back to its bound

@@ -11,8 +11,7 @@ Score solve_score(const Eigen::MatrixXd& S, const Eigen::VectorXd& s,
   Score score;
   if (s.size() == 0) return score;
   constexpr double rounding = 1e-8;
-  const Eigen::VectorXd scale =
-      before.cwiseSqrt().unaryExpr([](double root) { return root > 0.0 ? 1.0 / root : 0.0; });
+  const Eigen::VectorXd scale = inverse_roots(before, 0.0);
   const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * S * scale.asDiagonal());
   const Eigen::VectorXd rotated = eigen.vectors.transpose() * scale.cwiseProduct(s);
   Eigen::VectorXd solved = Eigen::VectorXd::Zero(s.size());

@@ -69,10 +69,10 @@ struct Thresholds {
     std::vector<double> added_windows = {0.1, 0.4, 1.0};
     // Maximum iterations: of a first fit; of a repeated fit, enough to test whether it reaches
     // another local minimum; of a leader, which must converge.
-    int trial_iterations = 12, brief_iterations = 10, patient_iterations = 60;
+    int trial_iterations = 12, brief_iterations = 10, leader_iterations = 60;
     // Relative fall of χ² per step below which a bad fit counts as stalled. It is equivalent to
     // some tens in χ², whereas the χ² of such leaders differ by thousands.
-    double creep = 5e-4;
+    double min_relative_decrease = 5e-4;
     // Maximum ratio of χ² at a predicted start to that of the trial behind the prediction.
     double max_start_growth = 10.0;
     // Number of blocks into which recordings are averaged for slow effects: several times faster

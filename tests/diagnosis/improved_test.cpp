@@ -222,7 +222,8 @@ TEST(Improved, StartsWithTheAppendage) {
                  {"inertia_kg_m2", {0.01}, {}}},
                 {},
                 ""}};
-  d.effects[0].begins = {{"initial_angle_deg", {0.5}, {}}, {"initial_rate_rad_s", {-0.02}, {}}};
+  d.effects[0].initial_states = {{"initial_angle_deg", {0.5}, {}},
+                                 {"initial_rate_rad_s", {-0.02}, {}}};
   const PropagationRun run = read_propagation(read(improved(written, d)));
   ASSERT_EQ(run.initial.extra.size(), 2u);
   EXPECT_NEAR(run.initial.extra[0], 0.5 * pi / 180.0, 1e-12);

@@ -9,6 +9,7 @@
 #include "diagnosis/attitude/diagnose.h"
 #include "scenes/experiment/toml.h"
 #include "tests/diagnosis/named.h"
+#include "tests/noise.h"
 
 namespace photorque {
 
@@ -39,6 +40,14 @@ std::vector<double> sampled(double interval_s, int rows, const Function& at) {
   std::vector<double> all;
   for (int i = 0; i < rows; ++i) all.push_back(at(interval_s * i));
   return all;
+}
+
+// The values with independent errors.
+inline Channel noisy(const std::string& name, std::vector<double> values, double sigma,
+                     uint64_t seed) {
+  Noise noise(seed, sigma);
+  for (double& value : values) value += noise();
+  return {name, std::move(values)};
 }
 
 // θ'' = −k θ − c θ' from a rest at 1.

@@ -2,12 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "attitude/estimation/segments.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
-#include "attitude/propagation/sampling.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/errors.h"
@@ -34,18 +34,21 @@ noise_rad_s = 0.003
 )";
 
 // I ω' = −τ − k ω² from ω₀: ω = √(τ/k) tan(atan(ω₀ √(k/τ)) − √(τk) t/I), by separation.
-double coasting_rad_s(double time_s, double start_rad_s, double dry, double form) {
+double coasting_rad_s(double time_s, double dry = 0.01, double form = 1.2e-4) {
+  constexpr double start_rad_s = 30.0;
   const double unit = std::sqrt(dry / form);
   return unit * std::tan(std::atan(start_rad_s / unit) - std::sqrt(dry * form) * time_s);
 }
 
+// Five minutes of a rate, with the noise of wheel_toml.
+template <class Rate>
+Channel rate_of_wheel(uint64_t seed, const Rate& rate_rad_s) {
+  return noisy("gyro_z_rad_s", sampled(0.25, 1200, rate_rad_s), 0.003, seed);
+}
+
 TEST(Machines, AWheelThatCoastsDownIsNamedByItsDryTorqueAndItsDrag) {
-  constexpr double dry = 0.01, form = 1.2e-4, start_rad_s = 30.0;
-  Noise noise(3, 0.003);
-  Channel rate{"gyro_z_rad_s", {}};
-  for (int i = 0; i < 1200; ++i) {
-    rate.values.push_back(coasting_rad_s(0.25 * i, start_rad_s, dry, form) + noise());
-  }
+  constexpr double dry = 0.01, form = 1.2e-4;
+  const Channel rate = rate_of_wheel(3, [](double t) { return coasting_rad_s(t, dry, form); });
   const Diagnosis d = diagnosed(machine(wheel_toml), 0.25, {rate});
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));
   for (const FoundEffect& effect : d.effects) {
@@ -64,13 +67,10 @@ TEST(Machines, AWheelThatCoastsDownIsNamedByItsDryTorqueAndItsDrag) {
 // A wheel with a hum that no law explains, beside which the two names stand. Each gate that they
 // pass takes them away where it asks for what nothing can give.
 TEST(Machines, NamesBesideTheRestPassEveryGate) {
-  constexpr double dry = 0.01, form = 1.2e-4, start_rad_s = 30.0;
-  Noise noise(3, 0.003);
-  Channel rate{"gyro_z_rad_s", {}};
-  for (int i = 0; i < 1200; ++i) {
-    rate.values.push_back(coasting_rad_s(0.25 * i, start_rad_s, dry, form) +
-                          0.05 * std::sin(0.31 * i + 0.002 * i * i) + noise());
-  }
+  const Channel rate = rate_of_wheel(3, [](double t) {
+    const double i = t / 0.25;
+    return coasting_rad_s(t) + 0.05 * std::sin(0.31 * i + 0.002 * i * i);
+  });
   const std::vector<NamedRecording> runs = {{"wheel.csv", recording_of(0.25, {rate})}};
   const auto named = [&](const DiagnoseOptions& options) {
     return diagnose(machine(wheel_toml), runs, {}, options);
@@ -127,17 +127,8 @@ inertia_kg_m2 = 1e-4
   nominal.model.schedule.held.front().wheel.from_s = 0.0;
   const Dynamics dynamics(nominal.model);
   PlatformState start = dynamics.initial_state({2.0, -1.0, 0.5});
-  PropagationOptions options;
-  options.tolerance = 1e-10;
-  Propagator propagator(dynamics, start, duration_s, options);
-  PlatformState end = start;
-  sample(
-      propagator, 1, [&](size_t) { return duration_s; },
-      [&](const Samples& samples) {
-        std::vector<double> y;
-        for (const Lanes& c : samples.y) y.push_back(c[0]);
-        end = to_state(duration_s, y);
-      });
+  const PlatformState end =
+      propagate(dynamics, start, std::array{duration_s}, {.tolerance = 1e-10}).states.front();
   const auto momentum = [&](const PlatformState& s, double wheel_rad_s) {
     const Vec3 body = nominal.model.platform.inertia_kg_m2 * s.rate_body_rad_s +
                       wheel_kg_m2 * wheel_rad_s * Vec3::UnitZ();
@@ -165,17 +156,12 @@ offset_m = [0, 0, -0.2]
   constexpr double amplitude_rad = 1e-4;
   start.lab_from_body = Quat(Eigen::AngleAxisd(amplitude_rad, Vec3::UnitX()));
   const double rate = std::sqrt(2.0 * standard_gravity_m_s2 * 0.2 / 0.5), time_s = 3.0;
-  PropagationOptions options;
-  options.tolerance = 1e-12;
-  Propagator propagator(dynamics, start, time_s, options);
-  sample(
-      propagator, 1, [&](size_t) { return time_s; },
-      [&](const Samples& samples) {
-        EXPECT_NEAR(samples.y[1][0], 0.5 * amplitude_rad * std::cos(rate * time_s), 1e-10);
-        EXPECT_EQ(samples.y[2][0], 0.0);
-        EXPECT_EQ(samples.y[component::rate + 1][0], 0.0);
-        EXPECT_EQ(samples.y[component::rate + 2][0], 0.0);
-      });
+  const PlatformState end =
+      propagate(dynamics, start, std::array{time_s}, {.tolerance = 1e-12}).states.front();
+  EXPECT_NEAR(end.lab_from_body.x(), 0.5 * amplitude_rad * std::cos(rate * time_s), 1e-10);
+  EXPECT_EQ(end.lab_from_body.y(), 0.0);
+  EXPECT_EQ(end.rate_body_rad_s.y(), 0.0);
+  EXPECT_EQ(end.rate_body_rad_s.z(), 0.0);
 }
 
 TEST(Machines, ColumnsStateTheirContent) {
@@ -263,8 +249,7 @@ Channel driven_then_coasting(double noise_rad_s) {
   Channel rate{"gyro_z_rad_s", {}};
   for (int i = 0; i < 1500; ++i) {
     const double t = 0.25 * i, lost = i % 301 < 2 ? 2.0 / 3.0 : 1.0;
-    rate.values.push_back(lost * coasting_rad_s(std::max(0.0, t - 60.0), 30.0, 0.01, 1.2e-4) +
-                          noise());
+    rate.values.push_back(lost * coasting_rad_s(std::max(0.0, t - 60.0)) + noise());
   }
   return rate;
 }
@@ -321,7 +306,7 @@ per_recording = true
   for (const double dry : {0.008, 0.010, 0.013}) {
     Channel rate{"gyro_z_rad_s", {}};
     for (int i = 0; i < 1200; ++i) {
-      rate.values.push_back(coasting_rad_s(0.25 * i, 30.0, dry, 1.2e-4) + noise());
+      rate.values.push_back(coasting_rad_s(0.25 * i, dry) + noise());
     }
     runs.push_back({"run.csv", recording_of(0.25, {rate})});
   }
@@ -379,12 +364,11 @@ TEST(Machines, LargeSwingsAreNamedByWeightAndDrag) {
 // that never changes is no rival of a drag.
 TEST(Machines, ADragHasNoRivalsInAHeadingThatNeverChanges) {
   constexpr double k = 8.0, c = 0.05, noise_rad = 0.003;
-  Noise noise(29, noise_rad);
-  Channel angle{"angle_rad", {}};
-  for (int i = 0; i < 1200; ++i) {
-    const double t = i / 30.0;
-    angle.values.push_back(0.05 * std::exp(-0.5 * c * t) * std::cos(std::sqrt(k) * t) + noise());
-  }
+  const Channel angle = noisy(
+      "angle_rad",
+      sampled(1.0 / 30.0, 1200,
+              [](double t) { return 0.05 * std::exp(-0.5 * c * t) * std::cos(std::sqrt(k) * t); }),
+      noise_rad, 29);
   const Diagnosis d =
       diagnosed(machine(pendulum_toml(-k / standard_gravity_m_s2)), 1.0 / 30.0, {angle});
   ASSERT_THAT(kinds_of(d), ElementsAre("bearing_drag")) << d.sentence;
@@ -398,16 +382,13 @@ TEST(Machines, ATwistedLineIsFoundByTheRateAlone) {
   constexpr double k = 0.16, c = 0.012, largest_rad = 2.5, noise_rad_s = 0.003;
   constexpr int recordings = 6;
   const double omega = std::sqrt(k - 0.25 * c * c);
+  const std::vector<double> rate_rad_s = sampled(0.1, 2000, [&](double t) {
+    return -largest_rad * std::exp(-0.5 * c * t) *
+           (0.5 * c * std::cos(omega * t) + omega * std::sin(omega * t));
+  });
   int right = 0;
   for (unsigned seed = 31; seed < 31 + recordings; ++seed) {
-    Noise noise(seed, noise_rad_s);
-    Channel rate{"rate_rad_s", {}};
-    for (int i = 0; i < 2000; ++i) {
-      const double t = 0.1 * i;
-      rate.values.push_back(-largest_rad * std::exp(-0.5 * c * t) *
-                                (0.5 * c * std::cos(omega * t) + omega * std::sin(omega * t)) +
-                            noise());
-    }
+    const Channel rate = noisy("rate_rad_s", rate_rad_s, noise_rad_s, seed);
     const Diagnosis d =
         diagnosed(machine("[platform]\ntopology = \"one_axis\"\naxis = \"z\"\n"), 0.1, {rate});
     std::vector<std::string> kinds = kinds_of(d);
@@ -537,11 +518,7 @@ TEST(Machines, WhatIsLeftOfMeansCountsAsTheirNoise) {
 
 // A wheel that speeds up as if its drag were −5e-4 N m s, which no experiment can state.
 TEST(Machines, FittedPriorsStayWithinTheRangeOfTheirKeys) {
-  Noise noise(3, 0.003);
-  Channel rate{"gyro_z_rad_s", {}};
-  for (int i = 0; i < 1200; ++i) {
-    rate.values.push_back(3.0 * std::exp(5e-4 * 0.25 * i) + noise());
-  }
+  const Channel rate = rate_of_wheel(3, [](double t) { return 3.0 * std::exp(5e-4 * t); });
   const Diagnosis d = diagnosed(machine(wheel_toml), 0.25, {rate});
   ASSERT_EQ(d.priors_refined.size(), 1u) << d.sentence;
   EXPECT_EQ(d.priors_refined[0].key, "disturbance[0].coefficient_N_m_s");

@@ -22,12 +22,6 @@ std::string about(const std::string& axis, const std::string& noise) {
   return "[platform]\ntopology = \"one_axis\"\naxis = \"" + axis + "\"\n[sensors." + noise + "\n";
 }
 
-Channel noisy(const std::string& name, std::vector<double> values, double sigma, uint64_t seed) {
-  Noise noise(seed, sigma);
-  for (double& value : values) value += noise();
-  return {name, std::move(values)};
-}
-
 std::vector<double> rounded(std::vector<double> values, double step) {
   for (double& value : values) value = step * std::round(value / step);
   return values;

@@ -21,9 +21,11 @@ Explanation explanation(std::vector<size_t> which, double log_evidence, double p
   return e;
 }
 
+// The decision without residual structure.
 Decision decided(const std::vector<Explanation>& trials,
-                 const Thresholds::Decision& limits = Thresholds().decision) {
-  return decide(trials, candidates, {[](size_t) { return 0.0; }}, limits);
+                 const Thresholds::Decision& limits = Thresholds().decision,
+                 const std::vector<CandidateTraits>& all = candidates) {
+  return decide(trials, all, {[](size_t) { return 0.0; }}, limits);
 }
 
 // Nothing missing, "first", and both.
@@ -110,14 +112,12 @@ TEST(Decide, AnUnlikelyNameIsNotReported) {
                                             {.name = "law", .is_empirical = true}};
   const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
                                            explanation({1}, 104.4, 1.0)};
-  const auto judged = [&](const Thresholds::Decision& limits) {
-    return decide(trials, all, {[](size_t) { return 0.0; }}, limits);
-  };
   Thresholds::Decision limits;
-  EXPECT_EQ(judged(limits).finding, Finding::unknown);
-  EXPECT_NEAR(judged(limits).confidence, 1.0 / (1.0 + std::exp(-4.4)), 1e-3);
+  const Decision d = decided(trials, limits, all);
+  EXPECT_EQ(d.finding, Finding::unknown);
+  EXPECT_NEAR(d.confidence, 1.0 / (1.0 + std::exp(-4.4)), 1e-3);
   limits.min_probability = 0.0;
-  EXPECT_EQ(judged(limits).finding, Finding::named);
+  EXPECT_EQ(decided(trials, limits, all).finding, Finding::named);
 }
 
 // Two that explain as much are one answer: the first with the second in its place.
@@ -201,7 +201,7 @@ TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
   std::vector<Explanation> worse = trials;
   worse.front().holdout_chi2_per_sample = 20.0;
   worse.back().holdout_chi2_per_sample = 700.0;
-  EXPECT_TRUE(decide(worse, all, {[](size_t) { return 0.0; }}, limits).beside_law.empty());
+  EXPECT_TRUE(decided(worse, limits, all).beside_law.empty());
   // Where the law leaves structure, the names may make up for it.
   EXPECT_TRUE(judged(20.0, limits).beside_law.empty());
   Thresholds::Decision mutant = limits;
@@ -224,7 +224,7 @@ TEST(Decide, IndistinguishableEffectsAreNotConsistent) {
       t.joint_significance = t.significance;
       if (t.candidates.size() == 2) t.significance[1] = 1.0;
     }
-    return decide(trials, all, {[](size_t) { return 0.0; }}, Thresholds().decision);
+    return decided(trials, Thresholds().decision, all);
   };
   EXPECT_EQ(judged(1.0).finding, Finding::nothing_missing);
   EXPECT_TRUE(judged(1.0).undecided);

@@ -52,7 +52,7 @@ TEST(Fit, EndsWhereItFitsBadlyAndCreeps) {
   options.min_gain_fraction = 0.0;
   const ResidualModel bad = model(100), good = model(1'000'000);
   const Fit all_the_way = fit(bad, bad.start(), options);
-  options.creep = 5e-4;
+  options.min_relative_decrease = 5e-4;
   const Fit creeping = fit(bad, bad.start(), options);
   EXPECT_EQ(creeping.termination, Termination::max_iterations);
   EXPECT_LT(creeping.iterations, all_the_way.iterations);

@@ -263,7 +263,8 @@ TEST(Options, ValuesOutsideTheirRangesAreRefused) {
   for (const auto& spoil : std::vector<void (*)(Options&)>{
            [](Options& o) { o.windows = {}; }, [](Options& o) { o.windows = {1.5}; },
            [](Options& o) { o.max_iterations = 0; }, [](Options& o) { o.min_gain = -1.0; },
-           [](Options& o) { o.min_gain_fraction = NAN; }, [](Options& o) { o.creep = -1e-3; },
+           [](Options& o) { o.min_gain_fraction = NAN; },
+           [](Options& o) { o.min_relative_decrease = -1e-3; },
            [](Options& o) { o.initial_damping = -1e-3; }, [](Options& o) { o.min_damping = -1e-3; },
            [](Options& o) { o.max_damping = 0.0; }}) {
     Options options;

@@ -8,15 +8,27 @@
 
 namespace photorque {
 
+Disturbance Candidate::at_expected_size() const {
+  Disturbance acting = start;
+  for (size_t p = 0; p < acting.parameters.size(); ++p) {
+    if (is_strength(p)) acting.parameters[p].value += scale[p];
+  }
+  return acting;
+}
+
+Disturbance Candidate::with_strength_alone(size_t p) const {
+  Disturbance alone = start;
+  for (size_t other = 0; other < alone.parameters.size(); ++other) {
+    if (is_strength(other)) alone.parameters[other].value = other == p ? scale[p] : 0.0;
+  }
+  return alone;
+}
+
 std::optional<double> braking_power(const Candidate& candidate, AttitudeModel model) {
   const bool slides = model.platform.slides(), pushes = is_force(candidate.effect.how.needs);
   if (candidate.empirical() || candidate.start.stage == Stage::measurement) return std::nullopt;
   if (pushes ? !slides : !model.platform.turns_about_one_axis()) return std::nullopt;
-  Disturbance acting = candidate.start;
-  for (size_t p = 0; p < acting.parameters.size(); ++p) {
-    if (candidate.is_strength(p)) acting.parameters[p].value += candidate.scale[p];
-  }
-  model.disturbances = {std::move(acting)};
+  model.disturbances = {candidate.at_expected_size()};
   if (slides) model.disturbances.push_back(translation());
   // The force along x at this speed, or the torque about the axis at this rate.
   const auto action = [&](double motion) {
@@ -41,11 +53,7 @@ bool is_restoring(const Candidate& candidate, AttitudeModel model) {
       !model.platform.turns_about_one_axis() || is_force(candidate.effect.how.needs)) {
     return false;
   }
-  Disturbance acting = candidate.start;
-  for (size_t p = 0; p < acting.parameters.size(); ++p) {
-    if (candidate.is_strength(p)) acting.parameters[p].value += candidate.scale[p];
-  }
-  model.disturbances = {std::move(acting)};
+  model.disturbances = {candidate.at_expected_size()};
   if (model.platform.slides()) model.disturbances.push_back(translation());
   const Vec3& axis = model.platform.axis;
   const auto torque = [&](double angle_rad, double rate_rad_s) {

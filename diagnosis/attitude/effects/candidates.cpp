@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "attitude/estimation/axis_readings.h"
 #include "attitude/estimation/swing.h"
 #include "attitude/propagation/run.h"
 #include "diagnosis/attitude/effects/trial.h"
@@ -183,15 +184,8 @@ void scale_to_machine(const NominalModel& nominal, const std::vector<Observation
     std::vector<double> actions(c.start.parameters.size(), 0.0);
     for (size_t p = 0; p < c.start.parameters.size(); ++p) {
       if (!c.is_strength(p)) continue;
-      Disturbance one = c.start;
-      for (Parameter& other : one.parameters) {
-        if (&other != &one.parameters[p] &&
-            c.is_strength(static_cast<size_t>(&other - one.parameters.data()))) {
-          other.value = 0.0;
-        }
-      }
-      one.parameters[p].value = c.scale[p];
-      const double now = std::sqrt(mean_square_action(one, nominal.model, some, motions));
+      const double now =
+          std::sqrt(mean_square_action(c.with_strength_alone(p), nominal.model, some, motions));
       if (now > 0.0 && std::isfinite(now)) c.scale[p] *= expected / now;
       actions[p] = now;
     }
@@ -305,30 +299,17 @@ bool turns(const std::vector<Observation>& runs) {
 }
 
 // Rates about an axis from a gyro, or from angles over a sixteenth of the run.
-std::vector<double> rates_about(const Observation& seen, const Vec3& axis) {
-  std::vector<double> rate_rad_s, angle_rad, time_s;
-  size_t before = seen.blocks();
+std::vector<double> gyro_or_angle_rates(const Observation& seen, const Vec3& axis) {
+  std::vector<double> rate_rad_s;
   for (size_t i = 0; i < seen.blocks(); ++i) {
-    double along_rad_s = 0.0, read = 0.0;
-    for (int k = 0; k < 3; ++k) {
-      if (axis[k] == 0.0) continue;
-      along_rad_s += axis[k] * seen.gyro_rad_s[i][k];
-      read += seen.gyro_rows[i][k];
-    }
-    if (read > 0.0 && std::isfinite(along_rad_s)) rate_rad_s.push_back(along_rad_s);
-    if (!seen.has_some_attitude() || !(seen.attitude_rows[i] > 0.0)) continue;
-    const double turned_rad =
-        before == seen.blocks()
-            ? 0.0
-            : axis.dot(turn_vector(seen.attitude[i] * seen.attitude[before].conjugate()));
-    angle_rad.push_back((angle_rad.empty() ? 0.0 : angle_rad.back()) + turned_rad);
-    time_s.push_back(seen.time_s[i]);
-    before = i;
+    if (const auto along_rad_s = rate_along(seen, i, axis)) rate_rad_s.push_back(*along_rad_s);
   }
-  if (!rate_rad_s.empty()) return rate_rad_s;
-  const size_t across = std::max<size_t>(1, angle_rad.size() / 16);
-  for (size_t i = across; i < angle_rad.size(); ++i) {
-    rate_rad_s.push_back((angle_rad[i] - angle_rad[i - across]) / (time_s[i] - time_s[i - across]));
+  if (!rate_rad_s.empty() || !seen.has_some_attitude()) return rate_rad_s;
+  const AxisReadings angle = angles_about(seen, axis, 0, seen.blocks());
+  const size_t across = std::max<size_t>(1, angle.value.size() / 16);
+  for (size_t i = across; i < angle.value.size(); ++i) {
+    rate_rad_s.push_back((angle.value[i] - angle.value[i - across]) /
+                         (angle.time_s[i] - angle.time_s[i - across]));
   }
   return rate_rad_s;
 }
@@ -336,7 +317,7 @@ std::vector<double> rates_about(const Observation& seen, const Vec3& axis) {
 // Whether every run rotates in one direction about `axis` and slows down; it may stop.
 bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
   return std::all_of(runs.begin(), runs.end(), [&](const Observation& seen) {
-    const std::vector<double> rate_rad_s = rates_about(seen, axis);
+    const std::vector<double> rate_rad_s = gyro_or_angle_rates(seen, axis);
     if (rate_rad_s.empty()) return false;
     const auto [least, most] = std::minmax_element(rate_rad_s.begin(), rate_rad_s.end());
     // Fraction of the largest rate that noise may produce for a wheel at rest or in a short
@@ -400,11 +381,7 @@ bool slides_until_rest(const std::vector<Observation>& runs) {
 
 // Whether a candidate of the expected size makes the motion depend on the attitude.
 bool needs_attitude(const Candidate& c, AttitudeModel model) {
-  Disturbance acting = c.start;
-  for (size_t p = 0; p < acting.parameters.size(); ++p) {
-    if (c.is_strength(p)) acting.parameters[p].value += c.scale[p];
-  }
-  model.disturbances.push_back(std::move(acting));
+  model.disturbances.push_back(c.at_expected_size());
   return depends_on_attitude(model);
 }
 
@@ -435,11 +412,7 @@ void set_zero_at_rest(const AttitudeModel& nominal, Candidate& c) {
   AttitudeModel model = nominal;
   for (size_t p = 0; p < c.start.parameters.size(); ++p) {
     if (!c.is_strength(p)) continue;
-    Disturbance one = c.start;
-    for (size_t other = 0; other < one.parameters.size(); ++other) {
-      if (c.is_strength(other)) one.parameters[other].value = other == p ? c.scale[p] : 0.0;
-    }
-    model.disturbances = {std::move(one)};
+    model.disturbances = {c.with_strength_alone(p)};
     const PlatformState upright = Dynamics(model).initial_state(Vec3::Zero());
     if (model.platform.axis.dot(disturbance_torques_body_N_m(model, upright).front()) != 0.0) {
       c.scale[p] = 0.0;

@@ -6,8 +6,6 @@
 
 namespace photorque {
 
-// Screening for fast appendages that avoids a propagation of the platform for each frequency.
-
 // One run propagated along a fit.
 struct PropagatedRun {
   const Observation& seen;
@@ -15,14 +13,12 @@ struct PropagatedRun {
 };
 
 // The score of light appendages about these axes [body, unit vectors], one strength J [kg m²] each,
-// all of one frequency and damping (fraction of critical). The motion of each appendage under the
-// fitted motion is exact. The platform is assumed to be free within a swing: δω = −J I⁻¹ a φ'.
-// Instead of a projection of the fitted parameters, parts slower than a swing are removed from
-// readings and responses.
+// all of one frequency and damping (fraction of critical), without a propagation for each. The
+// motion of each appendage under the fitted motion is exact. The platform is assumed to be free
+// within a swing: δω = −J I⁻¹ a φ'. Instead of a projection of the fitted parameters, parts slower
+// than a swing are removed from readings and responses.
 Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
                        const std::vector<Vec3>& axes, double frequency_Hz, double damping);
-
-// Starts for a flexible appendage: its frequency and axis.
 
 // The best flexible modes to add to `fit`: some that the motion drives, and one that was deflected
 // at the start of a run if it explains more. `start` is the disturbance with its expected strength;

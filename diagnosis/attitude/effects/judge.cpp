@@ -42,9 +42,8 @@ double inertia_change(const Trial& trial) {
   double largest = 0.0;
   // Errors of an uncertain nominal inertia count too.
   for (const Disturbance& d : trial.fit.best.model.disturbances) {
-    const DisturbanceKind* kind = find_kind(d.kind);
-    if (kind == nullptr || kind->screening.inertia_change_kg_m2 == nullptr) continue;
-    const Mat3 found = nominal_kg_m2 + kind->screening.inertia_change_kg_m2(d);
+    if (!changes_inertia(d)) continue;
+    const Mat3 found = nominal_kg_m2 + find_kind(d.kind)->screening.inertia_change_kg_m2(d);
     const Vec3 moments = found.selfadjointView<Eigen::Lower>().eigenvalues();
     largest = std::max(largest, (moments - nominal).cwiseQuotient(nominal).cwiseAbs().maxCoeff());
   }
@@ -73,13 +72,7 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
   const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const Candidate& c = all[trial.candidates[i]];
-    const std::vector<Eigen::Index> where = shared_indices(trial, i);
-    size_t k = 0;
-    for (size_t p = 0; p < c.scale.size(); ++p) {
-      if (!c.is_fitted(p)) continue;
-      const Eigen::Index at = where[k++];
-      const double value =
-          trial.fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value;
+    for (const auto& [disturbance, p, at, value] : fitted_numbers(trial, i)) {
       const double sigma = std::sqrt(std::max(0.0, covariance(at, at)));
       const double beyond = limits.bound_sigma * sigma;
       if (value < c.lowest[p] - beyond || value > c.highest[p] + beyond) {
@@ -127,30 +120,19 @@ Significance significance(const Trial& trial, const Candidates& all, size_t whic
   const Candidate& c = all[trial.candidates[which]];
   const std::string size = key_of_size(c);
   if (size.empty()) return {};
-  const std::vector<Eigen::Index> where = shared_indices(trial, which);
-  const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
-  std::vector<std::pair<Eigen::Index, double>> linear;
-  size_t k = 0;
-  for (size_t p = 0; p < c.scale.size(); ++p) {
-    if (!c.is_fitted(p)) continue;
-    const Eigen::Index at = where[k++];
+  std::vector<Eigen::Index> where;
+  std::vector<double> values;
+  for (const auto& [disturbance, p, at, value] : fitted_numbers(trial, which)) {
     // All coefficients of an empirical law together are its size; its searched shape is not.
     const bool is_size = c.empirical() ? !c.searched[p] : c.start.parameters[p].key == size;
     if (!is_size) continue;
-    linear.emplace_back(
-        at, trial.fit.best.model.disturbances[trial.disturbances[which]].parameters[p].value);
+    where.push_back(at);
+    values.push_back(value);
   }
-  const auto n = static_cast<Eigen::Index>(linear.size());
-  if (n == 0) return {0.0, 0.0};
-  Eigen::MatrixXd C(n, n);
-  Eigen::VectorXd theta(n);
-  for (Eigen::Index a = 0; a < n; ++a) {
-    theta[a] = linear[static_cast<size_t>(a)].second;
-    for (Eigen::Index b = 0; b < n; ++b) {
-      C(a, b) =
-          covariance(linear[static_cast<size_t>(a)].first, linear[static_cast<size_t>(b)].first);
-    }
-  }
+  if (where.empty()) return {0.0, 0.0};
+  const Eigen::MatrixXd C = trial.fit.shared_posterior()(where, where);
+  const Eigen::VectorXd theta =
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   return {std::sqrt(std::max(0.0, squared_distance(theta, C))),
           theta.cwiseAbs().cwiseQuotient(C.diagonal().cwiseSqrt()).maxCoeff()};
 }
@@ -168,16 +150,11 @@ double log_evidence(const Trial& trial, const Candidates& all) {
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const Candidate& c = all[trial.candidates[i]];
     result += c.empirical() ? limits.log_prior_empirical : limits.log_prior_effect;
-    const std::vector<Eigen::Index> where = shared_indices(trial, i);
-    size_t k = 0;
-    for (size_t p = 0; p < c.scale.size(); ++p) {
-      if (!c.is_fitted(p)) continue;
-      const Eigen::Index at = where[k++];
+    for (const auto& [disturbance, p, at, value] : fitted_numbers(trial, i)) {
       if (!c.searched[p]) {
         strengths.at.push_back(at);
         strengths.owner.push_back(i);
-        strengths.value.push_back(
-            fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value);
+        strengths.value.push_back(value);
         strengths.scale.push_back(c.scale[p]);
         if (c.lowest[p] == 0.0) result += std::log(2.0);  // half-Gaussian prior
         continue;

@@ -80,10 +80,7 @@ const std::string& strength_of(const Candidate& c) {
 // Number of cycles of the predicted motion in its first run: turns of the body, or oscillations of
 // a component of its rate about the mean.
 double cycles(const Fit& fit, const Observation& seen) {
-  PredictionOptions options;
-  options.keep_residuals = true;
-  const Dynamics dynamics(fit.best.model_of(0, seen));
-  const Prediction p = predict(dynamics, fit.best.runs.front().initial, seen, {}, options);
+  const Prediction p = residuals_of(fit, 0, seen);
   Vec3 mean = Vec3::Zero();
   for (const PlatformState& state : p.states) mean += state.rate_body_rad_s;
   mean /= static_cast<double>(p.states.size());
@@ -242,16 +239,12 @@ std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observa
   const size_t size = std::bit_ceil(static_cast<size_t>(bins));
   ResidualSpectrum spectrum{bins_a_block / (interval_s * static_cast<double>(size)),
                             std::vector<double>(size / 2, 0.0)};
-  PredictionOptions options;
-  options.keep_residuals = true;
-  for (size_t run = 0; run < runs.size(); ++run) {
-    const Dynamics dynamics(at.best.model_of(run, runs[run]));
-    try {
-      add_power(predict(dynamics, at.best.runs[run].initial, runs[run], {}, options), runs[run],
-                spectrum);
-    } catch (const NumericalError&) {
-      return {};
+  try {
+    for (size_t run = 0; run < runs.size(); ++run) {
+      add_power(residuals_of(at, run, runs[run]), runs[run], spectrum);
     }
+  } catch (const NumericalError&) {
+    return {};
   }
   std::vector<double>& power = spectrum.power;
   const auto slow =

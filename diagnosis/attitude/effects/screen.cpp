@@ -75,23 +75,18 @@ std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
 namespace {
 
 // The strengths of a candidate as a group; adds their columns in the sums to `columns`.
-inference::StrengthGroup group_of(const inference::Term<Start>& term, size_t at,
-                                  const Candidates& all, bool acts,
-                                  const std::vector<Eigen::Index>& where,
+inference::StrengthGroup group_of(const Candidate& c, size_t term,
+                                  const std::vector<SharedParameter>& numbers,
                                   std::vector<Eigen::Index>& columns) {
-  const Candidate& c = all[term.candidate];
   inference::StrengthGroup group;
-  group.term = at;
+  group.term = term;
   group.name = c.label;
   group.is_empirical = c.empirical();
   group.first = static_cast<Eigen::Index>(columns.size());
-  size_t k = 0;
-  for (size_t p = 0; p < c.scale.size(); ++p) {
-    if (!c.is_fitted(p)) continue;
-    const Eigen::Index column = where[k++];
+  for (const auto& [disturbance, p, column, value] : numbers) {
     if (!c.is_strength(p)) continue;
     columns.push_back(column);
-    group.value.push_back(acts ? term.start.disturbance.parameters[p].value : 0.0);
+    group.value.push_back(value);
     group.scale.push_back(c.scale[p]);
     group.lowest.push_back(c.lowest[p]);
     group.highest.push_back(c.highest[p]);
@@ -139,24 +134,22 @@ inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
   std::vector<inference::StrengthGroup> groups;
   std::vector<Eigen::Index> columns;
   // Columns of the shared sums: those of h.free in their order, then the extra ones.
-  Eigen::Index next = 0;
-  for (const Free& f : h.free) next += f.per_run ? 0 : 1;
+  auto next = static_cast<Eigen::Index>(h.shared().size());
   for (size_t t = 0; t < terms.size(); ++t) {
     const Candidate& c = all[terms[t].candidate];
     if (c.effect.how.fast || !c.has_linear_strength()) continue;
-    const bool acts = t < at.candidates.size();
-    std::vector<Eigen::Index> where;
-    if (acts) {
-      where = shared_indices(at, t);
+    std::vector<SharedParameter> numbers;
+    if (t < at.candidates.size()) {
+      numbers = fitted_numbers(at, t);
     } else {
       const size_t index = add_disturbance(h, without_strength(c, terms[t].start.disturbance));
       for (size_t p = 0; p < c.scale.size(); ++p) {
-        if (!c.is_fitted(p)) continue;
-        where.push_back(c.is_strength(p) ? next++ : -1);
-        if (c.is_strength(p)) extra.push_back({index, static_cast<int>(p)});
+        if (!c.is_strength(p)) continue;
+        numbers.push_back({index, p, next++, 0.0});
+        extra.push_back({index, static_cast<int>(p)});
       }
     }
-    groups.push_back(group_of(terms[t], t, all, acts, where, columns));
+    groups.push_back(group_of(c, t, numbers, columns));
   }
   const inference::SumsOfRuns sums = sums_at(h, runs, extra);
   if (!std::isfinite(sums.chi2)) return {};

@@ -47,19 +47,26 @@ Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& conte
 
 namespace {
 
-// Resets a diverged fit to the nominal model and the first readings of each run, because its
-// parameters are useless as a start.
-void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observation>& runs) {
-  const auto& found = parent.disturbances;
+// Resets the parameters of the nominal disturbances, which come first, to their stated values, and
+// the runs to their first readings.
+void reset_to_stated(size_t nominal_disturbances, const std::vector<Observation>& runs,
+                     Hypothesis& h) {
   for (const Free& f : h.free) {
-    if (f.per_run) continue;
-    if (std::find(found.begin(), found.end(), f.disturbance) == found.end()) h.value(f) = f.mean;
+    if (!f.per_run && f.disturbance < nominal_disturbances) h.value(f) = f.mean;
   }
   h.runs = starts_from_data(h, runs);
 }
 
+// Options of a fit whose start is useless if its χ² is far above that of the trial behind it.
+inference::Options with_start_limit(inference::Options options, const Trial& trial,
+                                    const Thresholds& limits) {
+  options.max_start_chi2 = std::max(limits.fitting.max_start_growth * trial.fit.chi2,
+                                    limits.diverged_chi2_per_sample * trial.fit.samples);
+  return options;
+}
+
 // Whether an uncertain inertia differs from its nominal value by more than its sigma.
-bool inertia_is_bent(const Hypothesis& h, size_t nominal_disturbances) {
+bool inertia_is_shifted(const Hypothesis& h, size_t nominal_disturbances) {
   return std::any_of(h.free.begin(), h.free.end(), [&](const Free& f) {
     if (f.per_run || f.disturbance >= nominal_disturbances) return false;
     return changes_inertia(h.model.disturbances[f.disturbance]) &&
@@ -70,21 +77,18 @@ bool inertia_is_bent(const Hypothesis& h, size_t nominal_disturbances) {
 // Fits from `h` and, if its inertia is shifted, also from the stated values. The torque equation is
 // homogeneous, so a model that lacks an effect shifts its inertia first; an added effect then only
 // finds the local minimum near that inertia.
-Fit fit_unbent(const Hypothesis& h, size_t nominal_disturbances,
-               const std::vector<Observation>& runs, const FitSettings& settings,
-               const Thresholds& limits) {
-  Fit bent = fit(h, runs, settings);
-  if (!inertia_is_bent(h, nominal_disturbances)) return bent;
+Fit fit_also_from_stated(const Hypothesis& h, size_t nominal_disturbances,
+                         const std::vector<Observation>& runs, const inference::Options& options,
+                         const Thresholds& limits) {
+  Fit shifted = fit(h, runs, {options});
+  if (!inertia_is_shifted(h, nominal_disturbances)) return shifted;
   Hypothesis stated = h;
-  for (const Free& f : h.free) {
-    if (!f.per_run && f.disturbance < nominal_disturbances) stated.value(f) = f.mean;
-  }
-  stated.runs = starts_from_data(stated, runs);
-  FitSettings growing = settings;
+  reset_to_stated(nominal_disturbances, runs, stated);
+  inference::Options growing = options;
   growing.windows = limits.fitting.first_windows;
   growing.max_start_chi2 = inference::infinity;
-  const Fit straight = fit(stated, runs, growing);
-  return straight.chi2 < bent.chi2 ? straight : bent;
+  const Fit from_stated = fit(stated, runs, {growing});
+  return from_stated.chi2 < shifted.chi2 ? from_stated : shifted;
 }
 
 // Adds the fitted parameters of a candidate, whose disturbance has index `index` in the model.
@@ -130,17 +134,6 @@ Hypothesis nominal_part(const Trial& trial) {
 
 }  // namespace
 
-std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which) {
-  std::vector<Eigen::Index> result;
-  Eigen::Index shared = 0;
-  for (const Free& f : trial.fit.best.free) {
-    if (f.per_run) continue;
-    if (f.disturbance == trial.disturbances[which]) result.push_back(shared);
-    ++shared;
-  }
-  return result;
-}
-
 Trial nominal_trial(const Fit& nominal, const Candidates& all) {
   Trial trial;
   trial.fit = nominal;
@@ -149,19 +142,20 @@ Trial nominal_trial(const Fit& nominal, const Candidates& all) {
 }
 
 Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Start& start,
-             const std::vector<Observation>& runs, const FitSettings& settings) {
+             const std::vector<Observation>& runs, const inference::Options& options) {
   Trial trial;
   trial.candidates = parent.candidates;
   trial.disturbances = parent.disturbances;
   Hypothesis h = parent.fit.best;
-  FitSettings how = settings;
+  inference::Options how = options;
   // The scan of a mode that explains most of the residual starts near the solution.
   const bool is_near =
       all[candidate].effect.how.scan == Scan::mode && start.gain > 0.5 * parent.fit.chi2;
   if (is_near) {
-    how.max_iterations = std::max(how.max_iterations, all.limits.fitting.patient_iterations);
+    how.max_iterations = std::max(how.max_iterations, all.limits.fitting.leader_iterations);
   } else if (parent.fit.chi2_per_sample() > all.limits.diverged_chi2_per_sample) {
-    start_again(h, parent, runs);
+    // The parameters of a diverged fit are useless as a start.
+    reset_to_stated(h.model.disturbances.size() - parent.candidates.size(), runs, h);
     how.windows = all.limits.fitting.diverged_windows;
   }
   trial.candidates.push_back(candidate);
@@ -171,10 +165,10 @@ Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const
     // the frequency.
     Hypothesis as_scanned = h;
     std::erase_if(as_scanned.free, [](const Free& f) { return !f.per_run; });
-    h.runs = fit(as_scanned, runs, settings).best.runs;
+    h.runs = fit(as_scanned, runs, {options}).best.runs;
   }
-  trial.fit =
-      fit_unbent(h, h.model.disturbances.size() - trial.candidates.size(), runs, how, all.limits);
+  trial.fit = fit_also_from_stated(h, h.model.disturbances.size() - trial.candidates.size(), runs,
+                                   how, all.limits);
   judge(trial, all);
   return trial;
 }
@@ -256,7 +250,7 @@ void begin_as(const Trial& from, const Trial& trial, Hypothesis& h) {
 }
 
 Trial assembled(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
-                const std::vector<Observation>& runs, const FitSettings& settings) {
+                const std::vector<Observation>& runs, const inference::Options& options) {
   Hypothesis h = nominal_part(from);
   Trial trial;
   for (const inference::Member<Start>& member : members) {
@@ -271,24 +265,21 @@ Trial assembled(const Trial& from, const Candidates& all, const inference::Membe
     trial.disturbances.push_back(add_free(h, c, start, all.limits));
   }
   begin_as(from, trial, h);
-  trial.fit = fit_unbent(h, h.model.disturbances.size() - trial.candidates.size(), runs, settings,
-                         all.limits);
+  trial.fit = fit_also_from_stated(h, h.model.disturbances.size() - trial.candidates.size(), runs,
+                                   options, all.limits);
   return trial;
 }
 
 }  // namespace
 
 Trial assemble(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
-               const std::vector<Observation>& runs, const FitSettings& settings) {
-  FitSettings near = settings;
-  near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * from.fit.chi2,
-                                 all.limits.diverged_chi2_per_sample * from.fit.samples);
+               const std::vector<Observation>& runs, const inference::Options& options) {
   // If no candidate is removed, the first step of a fit from the trial equals the forecast and also
   // moves the initial conditions of each run. Otherwise the forecast is the nearest start.
   Trial trial = assembled(from, all, adds_to(from, members) ? without_forecast(members) : members,
-                          runs, near);
+                          runs, with_start_limit(options, from, all.limits));
   if (!std::isfinite(trial.fit.chi2)) {
-    FitSettings growing = settings;
+    inference::Options growing = options;
     growing.windows = growing_windows(all.limits, runs);
     trial = assembled(from, all, without_forecast(members), runs, growing);
   }
@@ -298,7 +289,7 @@ Trial assemble(const Trial& from, const Candidates& all, const inference::Member
 
 Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t candidate,
                const Disturbance& start, const std::vector<Observation>& runs,
-               const FitSettings& settings) {
+               const inference::Options& options) {
   Trial result = trial;
   const size_t index = trial.disturbances[which];
   result.candidates[which] = candidate;
@@ -306,7 +297,7 @@ Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t c
   h.model.disturbances[index] = start;
   std::erase_if(h.free, [&](const Free& f) { return f.disturbance == index; });
   free_parameters(h, all[candidate], index, all.limits);
-  result.fit = fit(h, runs, settings);
+  result.fit = fit(h, runs, {options});
   judge(result, all);
   return result;
 }
@@ -332,7 +323,7 @@ Trial within_physics(const Trial& trial, const Candidates& all,
   const auto leads_back = [&](const std::vector<double>& windows) {
     FitSettings settings;
     settings.windows = windows;
-    settings.max_iterations = all.limits.fitting.patient_iterations;
+    settings.max_iterations = all.limits.fitting.leader_iterations;
     result.fit = fit(start, runs, settings);
     return result.fit.chi2 < trial.fit.chi2 + all.limits.leaders.near_chi2;
   };
@@ -341,18 +332,18 @@ Trial within_physics(const Trial& trial, const Candidates& all,
 }
 
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
-            const std::vector<RunStart>& starts, const FitSettings& settings) {
+            const std::vector<RunStart>& starts, const inference::Options& options) {
   Trial result = trial;
   Hypothesis h = trial.fit.best;
   h.runs = starts;
   adapt_to_runs(h, runs);
-  result.fit = fit(h, runs, settings);
+  result.fit = fit(h, runs, {options});
   judge(result, all);
   return result;
 }
 
 Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
-                 const std::vector<Observation>& runs, const FitSettings& settings) {
+                 const std::vector<Observation>& runs, const inference::Options& options) {
   Trial from = trial;
   std::vector<Disturbance>& to = from.fit.best.model.disturbances;
   const std::vector<Disturbance>& source = other.fit.best.model.disturbances;
@@ -370,10 +361,7 @@ Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
     if (extra.size() != own.size()) extra = own;
   }
   // A fit from a start that is far worse than the trial would only return to it.
-  FitSettings near = settings;
-  near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * trial.fit.chi2,
-                                 all.limits.diverged_chi2_per_sample * trial.fit.samples);
-  return refit(from, all, runs, starts, near);
+  return refit(from, all, runs, starts, with_start_limit(options, trial, all.limits));
 }
 
 }  // namespace photorque

@@ -14,10 +14,7 @@
 
 namespace photorque {
 
-// The effects that may be missing: every kind of disturbance that a recording can reveal, with the
-// priors of its parameters, which are defined in the files of the kinds.
-
-// One parametrisation of a kind.
+// One parametrisation of a kind of disturbance; the file of the kind defines its priors.
 struct Effect {
   std::string kind;
   std::vector<EffectKey> keys;  // scaled to the platform
@@ -31,8 +28,6 @@ std::vector<Effect> catalogue(const DisturbanceContext& context);
 
 // The disturbance with every parameter at its start.
 Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& context);
-
-// Candidates for the residual, and fitted models with some of them.
 
 struct NominalModel;  // attitude/propagation/run.h
 
@@ -48,6 +43,10 @@ struct Candidate {
   std::vector<bool> searched;
 
   bool empirical() const { return !variable.empty(); }
+  // The disturbance with the expected size added to every strength.
+  Disturbance at_expected_size() const;
+  // The disturbance whose only strength is that of parameter `p`, at its expected size.
+  Disturbance with_strength_alone(size_t p) const;
   bool is_fitted(size_t p) const { return scale[p] > 0.0; }
   // Whether it is linear with unknown strength.
   bool is_strength(size_t p) const { return is_fitted(p) && !searched[p]; }
@@ -112,33 +111,35 @@ Trial within_physics(const Trial& trial, const Candidates& all,
 
 // Adds a candidate whose parameters start from `start`, and fits.
 Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Start& start,
-             const std::vector<Observation>& runs, const FitSettings& settings = {});
+             const std::vector<Observation>& runs, const inference::Options& options = {});
 
 // Replaces the `which`-th candidate by another that starts from `start`, and fits. Neither may have
 // states.
 Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t candidate,
                const Disturbance& start, const std::vector<Observation>& runs,
-               const FitSettings& settings = {});
+               const inference::Options& options = {});
 
 // Refits the trial to other or more runs: shared parameters start from the fitted ones.
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
-            const std::vector<RunStart>& starts, const FitSettings& settings = {});
+            const std::vector<RunStart>& starts, const inference::Options& options = {});
 
 // Refits the trial on the same runs, starting from the result of another trial: from its initial
 // conditions and its values of all common parameters. The fit of a long tumbling run may end in one
 // of many local minima; results of other trials give another start.
 Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
-                 const std::vector<Observation>& runs, const FitSettings& settings = {});
+                 const std::vector<Observation>& runs, const inference::Options& options = {});
 
 // The nominal model with exactly these members. The fit starts from the result of `from`, which may
 // have other candidates.
 Trial assemble(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
-               const std::vector<Observation>& runs, const FitSettings& settings = {});
+               const std::vector<Observation>& runs, const inference::Options& options = {});
 
 // The candidates of the trial with their fitted values.
 std::vector<inference::Term<Start>> terms_of(const Trial& trial);
 
-// Indices of a candidate's parameters among the shared ones of the fit.
-std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which);
+// The fitted parameters of the trial's `which`-th candidate.
+inline std::vector<SharedParameter> fitted_numbers(const Trial& trial, size_t which) {
+  return trial.fit.best.shared(trial.disturbances[which]);
+}
 
 }  // namespace photorque
