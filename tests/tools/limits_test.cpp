@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/command_test.h"
+#include "tools/runs/memory.h"
 
 namespace photorque {
 namespace {
@@ -23,6 +24,23 @@ TEST_F(Limits, MapsThatDoNotFitIntoMemoryAreRefusedBeforeTheWork) {
   expect_refused(
       "trace " + nominal_file + endless_run + " --set receiver[0].bins=[4096,4096] --max-memory 2",
       "expected at most 2 GB (--max-memory)");
+}
+
+TEST_F(Limits, MemoryLeftIsThatOfTheControlGroupAndOfThoseAboveIt) {
+  const auto state_group = [&](const std::string& folder, const std::string& most) {
+    fs::create_directories(at(folder));
+    std::ofstream(at(folder) + "/memory.max") << most << "\n";
+    std::ofstream(at(folder) + "/memory.current") << "1000\n";
+  };
+  state_group("groups", "max");
+  EXPECT_FALSE(left_of_group_bytes(at("groups"), ""));
+  state_group("groups/job/step", "9000");
+  EXPECT_EQ(left_of_group_bytes(at("groups"), "job/step"), 8000u);
+  EXPECT_FALSE(left_of_group_bytes(at("groups"), "job"));
+  state_group("groups/job", "5000");
+  EXPECT_EQ(left_of_group_bytes(at("groups"), "job/step"), 4000u);
+  state_group("groups/job", "500");
+  EXPECT_EQ(left_of_group_bytes(at("groups"), "job/step"), 0u);
 }
 
 TEST_F(Limits, MemoryIsHeldWhereItIsAllowed) {
