@@ -1,8 +1,5 @@
 // `propagate --checkpoint` and that of `torque-map`: runs that are killed at random moments end as
 // if they had not been.
-#include <signal.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <random>
 #include <thread>
@@ -20,13 +17,7 @@ class CheckpointCommand : public CommandTest {
  protected:
   // The exit status of `photorque ARGUMENTS`, or −1 where it was killed after so long.
   int killed_after(const std::string& arguments, std::chrono::milliseconds length) const {
-    const std::string command =
-        "exec " + program_file + " " + arguments + " >>" + at("stdout") + " 2>>" + at("stderr");
-    const pid_t child = ::fork();
-    if (child == 0) {
-      ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-      ::_exit(127);
-    }
+    const pid_t child = start(arguments, at("stderr"));
     const auto end = std::chrono::steady_clock::now() + length;
     int status = 0;
     while (::waitpid(child, &status, WNOHANG) == 0) {
