@@ -23,7 +23,8 @@ namespace photorque {
 
 inline const std::string program_file = std::string(PHOTORQUE_BINARY_DIR) + "/photorque",
                          source_folder = PHOTORQUE_SOURCE_DIR,
-                         nominal_file = source_folder + "/scenes/stasis/nominal.toml";
+                         nominal_file = source_folder + "/scenes/stasis/nominal.toml",
+                         attitude_file = source_folder + "/scenes/stasis/attitude.toml";
 inline const fs::path shipped_scenes = source_folder + "/scenes";
 
 // The exit status and all that the program printed.
@@ -97,6 +98,10 @@ class CommandTest : public ::testing::Test {
   static void kill_process(pid_t child) {
     ::kill(child, SIGKILL);
     end_of(child);
+  }
+  // Its refusal contains these words.
+  void expect_refusal(const std::string& arguments, const std::string& words) const {
+    EXPECT_THAT(refused(arguments), ::testing::HasSubstr(words)) << arguments;
   }
   // The path of a file in the test's folder.
   std::string at(const std::string& name) const { return (folder_ / name).string(); }
