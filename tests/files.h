@@ -71,6 +71,12 @@ inline std::map<std::string, std::vector<double>> csv_table(const fs::path& path
   return table;
 }
 
+inline size_t occurrences(const std::string& text, const std::string& of) {
+  size_t count = 0;
+  for (size_t at = text.find(of); at != std::string::npos; at = text.find(of, at + 1)) ++count;
+  return count;
+}
+
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }

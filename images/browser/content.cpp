@@ -23,27 +23,11 @@ Json figure_json(const PageFigure& figure) {
           {"error", figure.estimate.standard_error}};
 }
 
-Json figures_json(const std::vector<PageFigure>& figures) {
-  Json list = Json::array();
-  for (const PageFigure& figure : figures) list.push_back(figure_json(figure));
-  return list;
-}
-
-Json power_json(const std::vector<PowerStage>& stages) {
-  Json list = Json::array();
-  for (const PowerStage& stage : stages) {
-    list.push_back({{"label", clean_text(stage.label)},
-                    {"value", stage.power_W.value},
-                    {"error", stage.power_W.standard_error},
-                    {"total", stage.is_total}});
-  }
-  return list;
-}
-
-Json texts_json(const std::vector<std::string>& texts) {
-  Json list = Json::array();
-  for (const std::string& text : texts) list.push_back(clean_text(text));
-  return list;
+Json stage_json(const PowerStage& stage) {
+  return {{"label", clean_text(stage.label)},
+          {"value", stage.power_W.value},
+          {"error", stage.power_W.standard_error},
+          {"total", stage.is_total}};
 }
 
 Json table_json(const Table& table, size_t most_rows) {
@@ -78,7 +62,7 @@ Json curve_json(const Plot::Curve& curve, size_t most_points) {
     return picked;
   };
   Json json = {{"label", clean_text(curve.label)},
-               {"x", packed(std::span<const double>(pick(curve.x)))},
+               {"x", packed(pick(curve.x))},
                {"y", packed_rounded(pick(curve.y))},
                {"style", curve.bars                    ? "bars"
                          : curve.markers || curve.dots ? "points"
@@ -91,32 +75,25 @@ Json curve_json(const Plot::Curve& curve, size_t most_points) {
 }
 
 Json panel_json(const Plot::Panel& panel, const PageLimits& limits) {
-  Json curves = Json::array();
-  for (const Plot::Curve& curve : panel.curves) {
-    curves.push_back(curve_json(curve, limits.curve_points));
-  }
-  Json levels = Json::array();
-  for (const double level : panel.levels) levels.push_back(level);
+  const auto json_of = [&](const Plot::Curve& one) { return curve_json(one, limits.curve_points); };
   return {{"y_label", clean_text(panel.y_label)},
           {"log", panel.y_log},
           {"robust", panel.robust_range},
-          {"levels", std::move(levels)},
-          {"curves", std::move(curves)}};
+          {"levels", panel.levels},
+          {"curves", list_of(panel.curves, json_of)}};
 }
 
 Json plot_json(const Plot& of, const RunPage& page, const PageLimits& limits) {
   const Plot plot = with_readable_time_unit(of);
-  Json panels = Json::array();
-  for (const Plot::Panel& panel : panels_of(plot)) panels.push_back(panel_json(panel, limits));
-  Json shaded = Json::array();
-  for (const Plot::Interval& interval : plot.shaded) {
-    shaded.push_back({interval.from, interval.to});
-  }
-  Json json = {
-      {"name", clean_text(plot.name)},       {"title", clean_text(plot.title)},
-      {"x_label", clean_text(plot.x_label)}, {"x_log", plot.x_log},
-      {"shaded", std::move(shaded)},         {"shaded_label", clean_text(plot.shaded_label)},
-      {"panels", std::move(panels)}};
+  const auto panel = [&](const Plot::Panel& one) { return panel_json(one, limits); };
+  const auto interval = [](const Plot::Interval& one) { return Json{one.from, one.to}; };
+  Json json = {{"name", clean_text(plot.name)},
+               {"title", clean_text(plot.title)},
+               {"x_label", clean_text(plot.x_label)},
+               {"x_log", plot.x_log},
+               {"shaded", list_of(plot.shaded, interval)},
+               {"shaded_label", clean_text(plot.shaded_label)},
+               {"panels", list_of(panels_of(plot), panel)}};
   const double per_unit = seconds_of_unit(plot) / seconds_of_unit(of);
   const auto cursor = std::ranges::find(page.cursors, plot.name, &PlotCursor::plot);
   if (cursor != page.cursors.end()) {
@@ -134,7 +111,6 @@ Json plot_json(const Plot& of, const RunPage& page, const PageLimits& limits) {
 Json map_content(const Map& map, int factor) {
   const Map small = factor > 1 ? reduced(map, factor) : map;
   const ColourScale scale = colour_scale(map);
-  const bool diverging = map.signed_values && scale.low == -scale.high;
   Json json = {{"name", clean_text(map.name)},
                {"title", clean_text(map.title)},
                {"unit", clean_text(map.unit)},
@@ -150,7 +126,7 @@ Json map_content(const Map& map, int factor) {
                {"y_label", clean_text(map.y_label)},
                {"equal_scale", map.equal_scale},
                {"smooth", map.smooth},
-               {"colours", diverging ? "cool_warm" : "viridis"},
+               {"colours", colours_of(scale, map.signed_values)},
                {"low", scale.low},
                {"high", scale.high},
                {"value", packed_rounded(small.value)}};
@@ -219,14 +195,12 @@ Map reduced(const Map& map, int factor) {
 
 Json page_content(const RunPage& page, const PageLimits& limits) {
   const std::vector<int> factors = map_reductions(page.product.maps, limits.map_bins);
-  Json maps = Json::array(), plots = Json::array(), tables = Json::array();
+  Json maps = Json::array();
   for (size_t i = 0; i < factors.size(); ++i) {
     maps.push_back(map_content(page.product.maps[i], factors[i]));
   }
-  for (const Plot& plot : page.product.plots) plots.push_back(plot_json(plot, page, limits));
-  for (const Table& table : page.product.tables) {
-    tables.push_back(table_json(table, limits.table_rows));
-  }
+  const auto plot = [&](const Plot& one) { return plot_json(one, page, limits); };
+  const auto table = [&](const Table& one) { return table_json(one, limits.table_rows); };
   Json provenance = provenance_json(page.provenance);
   if (page.rays) provenance["rays"] = *page.rays;
   Json json = {
@@ -235,15 +209,15 @@ Json page_content(const RunPage& page, const PageLimits& limits) {
       {"verb", clean_text(page.verb)},
       {"command", clean_text(page.command)},
       {"headline", clean_text(page.headline)},
-      {"headlines", figures_json(page.headlines)},
-      {"figures", figures_json(page.figures)},
+      {"headlines", list_of(page.headlines, figure_json)},
+      {"figures", list_of(page.figures, figure_json)},
       {"figures_file", clean_text(page.figures_file)},
-      {"power", power_json(page.power)},
+      {"power", list_of(page.power, stage_json)},
       {"with_text", page.text.has_value()},
-      {"notes", texts_json(page.notes)},
+      {"notes", list_of(page.notes, clean_text)},
       {"maps", std::move(maps)},
-      {"plots", std::move(plots)},
-      {"tables", std::move(tables)},
+      {"plots", list_of(page.product.plots, plot)},
+      {"tables", list_of(page.product.tables, table)},
       {"colours", {{"viridis", colours_json(viridis())}, {"cool_warm", colours_json(cool_warm())}}},
       {"provenance", std::move(provenance)}};
   if (page.stage) json["stage"] = stage_content(*page.stage, page.product, limits);

@@ -9,6 +9,7 @@
 
 #include "core/product.h"
 #include "images/browser/run_page.h"
+#include "images/drawing/colour.h"
 
 namespace photorque {
 
@@ -26,6 +27,19 @@ nlohmann::ordered_json packed_coarse(std::span<const double> numbers, double low
 // `json` as text that is safe between <script> and </script>: no character of it can end the
 // element or begin a comment.
 std::string script_text(const nlohmann::ordered_json& json);
+
+// The names of the colours of a scale in the script.
+inline const char* colours_of(const ColourScale& scale, bool signed_values) {
+  return signed_values && scale.low == -scale.high ? "cool_warm" : "viridis";
+}
+
+// An array of what `json_of` makes of each item.
+template <class Item, class JsonOf>
+nlohmann::ordered_json list_of(const std::vector<Item>& items, const JsonOf& json_of) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Item& item : items) list.push_back(json_of(item));
+  return list;
+}
 
 // Content of a page within its limits: large maps are reduced by averaging blocks of bins, long
 // tables are cut, curves are thinned. Each of them contains a note about it.

@@ -61,16 +61,16 @@ std::vector<StagePart> shown_parts(std::vector<StagePart> parts, size_t most_tri
 Json part_json(const StagePart& part) {
   return {{"name", clean_text(part.name)},
           {"colour", rgb_json(part.colour)},
-          {"position", packed(std::span<const float>(part.position_m))},
-          {"triangles", packed(std::span<const uint32_t>(part.triangles))}};
+          {"position", packed(part.position_m)},
+          {"triangles", packed(part.triangles)}};
 }
 
 Json surface_json(const PaintedSurface& surface, const ColourScale& scale) {
   static constexpr const char* sides[] = {"front", "back", "both"};
   Json json = {{"name", clean_text(surface.name)},
-               {"position", packed(std::span<const float>(surface.position_m))},
-               {"uv", packed(std::span<const float>(surface.uv))},
-               {"triangles", packed(std::span<const uint32_t>(surface.triangles))},
+               {"position", packed(surface.position_m)},
+               {"uv", packed(surface.uv)},
+               {"triangles", packed(surface.triangles)},
                {"side", sides[static_cast<size_t>(surface.side)]}};
   if (!surface.map.empty()) json["map"] = clean_text(surface.map);
   Json frames = Json::array();
@@ -89,13 +89,9 @@ Json surface_json(const PaintedSurface& surface, const ColourScale& scale) {
 
 // One scale for all surfaces that are painted together, over all states.
 ColourScale scale_of(const Painting& painting, const Product& product) {
-  double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
+  Extent extent;
   const auto extend = [&](const Map& map) {
-    for (const double value : map.value) {
-      if (!std::isfinite(value)) continue;
-      smallest = std::min(smallest, value);
-      largest = std::max(largest, value);
-    }
+    for (const double value : map.value) extent.include(value);
   };
   for (const PaintedSurface& surface : painting.surfaces) {
     for (const Map& map : surface.map_of_light) extend(map);
@@ -105,48 +101,35 @@ ColourScale scale_of(const Painting& painting, const Product& product) {
     }
     if (named != product.maps.end()) extend(*named);
   }
-  if (smallest > largest) smallest = largest = 0.0;
-  return colour_scale(smallest, largest, painting.signed_values);
+  return colour_scale(extent, painting.signed_values);
 }
 
 Json painting_json(const Painting& painting, const Product& product) {
   const ColourScale scale = scale_of(painting, product);
-  Json surfaces = Json::array();
-  for (const PaintedSurface& surface : painting.surfaces) {
-    surfaces.push_back(surface_json(surface, scale));
-  }
-  const bool diverging = painting.signed_values && scale.low == -scale.high;
+  const auto surface = [&](const PaintedSurface& one) { return surface_json(one, scale); };
   return {{"title", clean_text(painting.title)},
           {"unit", clean_text(painting.unit)},
-          {"colours", diverging ? "cool_warm" : "viridis"},
+          {"colours", colours_of(scale, painting.signed_values)},
           {"low", scale.low},
           {"high", scale.high},
-          {"surfaces", std::move(surfaces)}};
+          {"surfaces", list_of(painting.surfaces, surface)}};
 }
 
-Json lamps_json(const std::vector<StageLamp>& lamps) {
-  Json list = Json::array();
-  for (const StageLamp& lamp : lamps) {
-    list.push_back({{"name", clean_text(lamp.name)},
-                    {"position", vector_json(lamp.position_lab_m)},
-                    {"direction", vector_json(lamp.direction_lab)},
-                    {"radius", lamp.radius_m},
-                    {"far", lamp.is_far}});
-  }
-  return list;
+Json lamp_json(const StageLamp& lamp) {
+  return {{"name", clean_text(lamp.name)},
+          {"position", vector_json(lamp.position_lab_m)},
+          {"direction", vector_json(lamp.direction_lab)},
+          {"radius", lamp.radius_m},
+          {"far", lamp.is_far}};
 }
 
-Json arrows_json(const std::vector<StageArrow>& arrows) {
+Json arrow_json(const StageArrow& arrow) {
   static constexpr const char* kinds[] = {"force", "torque", "turn"};
-  Json list = Json::array();
-  for (const StageArrow& arrow : arrows) {
-    list.push_back({{"name", clean_text(arrow.name)},
-                    {"unit", clean_text(arrow.unit)},
-                    {"kind", kinds[static_cast<size_t>(arrow.kind)]},
-                    {"m_per_unit", arrow.m_per_unit},
-                    {"remark", clean_text(arrow.remark)}});
-  }
-  return list;
+  return {{"name", clean_text(arrow.name)},
+          {"unit", clean_text(arrow.unit)},
+          {"kind", kinds[static_cast<size_t>(arrow.kind)]},
+          {"m_per_unit", arrow.m_per_unit},
+          {"remark", clean_text(arrow.remark)}};
 }
 
 // Columns of numbers, concatenated over all states.
@@ -174,26 +157,17 @@ Json states_json(const SceneStage& stage) {
       figure_errors.push_back(figure.standard_error);
     }
   }
-  return {{"count", stage.states.size()},
-          {"attitude", packed(std::span<const double>(attitudes))},
-          {"arrow", packed(std::span<const double>(arrows))},
-          {"arrow_error", packed(std::span<const double>(errors))},
-          {"figure", packed(std::span<const double>(figures))},
-          {"figure_error", packed(std::span<const double>(figure_errors))}};
+  return {{"count", stage.states.size()}, {"attitude", packed(attitudes)},
+          {"arrow", packed(arrows)},      {"arrow_error", packed(errors)},
+          {"figure", packed(figures)},    {"figure_error", packed(figure_errors)}};
 }
 
-Json axes_json(const std::vector<StageAxis>& axes) {
-  Json list = Json::array();
-  for (const StageAxis& axis : axes) {
-    Json names = Json::array();
-    for (const std::string& name : axis.names) names.push_back(clean_text(name));
-    list.push_back({{"name", clean_text(axis.name)},
-                    {"unit", clean_text(axis.unit)},
-                    {"values", packed(std::span<const double>(axis.values))},
-                    {"plays", axis.plays},
-                    {"names", std::move(names)}});
-  }
-  return list;
+Json axis_json(const StageAxis& axis) {
+  return {{"name", clean_text(axis.name)},
+          {"unit", clean_text(axis.unit)},
+          {"values", packed(axis.values)},
+          {"plays", axis.plays},
+          {"names", list_of(axis.names, clean_text)}};
 }
 
 }  // namespace
@@ -205,21 +179,13 @@ Json stage_content(const SceneStage& stage, const Product& product, const PageLi
     throw InputError({}, "page", std::to_string(stage.states.size()) + " states",
                      std::to_string(nodes) + ", as many as the axes have nodes");
   }
-  Json parts = Json::array(), paintings = Json::array(), bodies = Json::array(),
-       figures = Json::array(), rays = Json::array();
-  for (const StagePart& part : shown_parts(stage.parts, limits.triangles, boxes)) {
-    parts.push_back(part_json(part));
-  }
-  for (const Painting& painting : stage.paintings) {
-    paintings.push_back(painting_json(painting, product));
-  }
-  for (const std::vector<float>& ends : stage.rays_of_light_lab_m) {
-    rays.push_back(packed(std::span<const float>(ends)));
-  }
-  for (const StageBody& body : stage.bodies) bodies.push_back({{"name", clean_text(body.name)}});
-  for (const StageFigure& figure : stage.figures) {
-    figures.push_back({{"label", clean_text(figure.label)}, {"unit", clean_text(figure.unit)}});
-  }
+  const std::vector<StagePart> parts = shown_parts(stage.parts, limits.triangles, boxes);
+  const auto painting = [&](const Painting& one) { return painting_json(one, product); };
+  const auto rays = [](const std::vector<float>& ends) { return packed(ends); };
+  const auto body = [](const StageBody& one) { return Json{{"name", clean_text(one.name)}}; };
+  const auto figure = [](const StageFigure& one) {
+    return Json{{"label", clean_text(one.label)}, {"unit", clean_text(one.unit)}};
+  };
   std::string remark = stage.remark;
   if (boxes > 0) {
     remark +=
@@ -227,15 +193,15 @@ Json stage_content(const SceneStage& stage, const Product& product, const PageLi
         (boxes == 1 ? " part with very many triangles is" : " parts with very many triangles are") +
         " drawn as boxes.";
   }
-  return {{"parts", std::move(parts)},
-          {"paintings", std::move(paintings)},
-          {"lamps", lamps_json(stage.lamps)},
-          {"bodies", std::move(bodies)},
-          {"arrows", arrows_json(stage.arrows)},
-          {"figures", std::move(figures)},
-          {"axes", axes_json(stage.axes)},
+  return {{"parts", list_of(parts, part_json)},
+          {"paintings", list_of(stage.paintings, painting)},
+          {"lamps", list_of(stage.lamps, lamp_json)},
+          {"bodies", list_of(stage.bodies, body)},
+          {"arrows", list_of(stage.arrows, arrow_json)},
+          {"figures", list_of(stage.figures, figure)},
+          {"axes", list_of(stage.axes, axis_json)},
           {"states", states_json(stage)},
-          {"rays", std::move(rays)},
+          {"rays", list_of(stage.rays_of_light_lab_m, rays)},
           {"light_of_state", stage.light_of_state},
           {"camera",
            {{"position", vector_json(stage.camera.position_lab_m)},

@@ -150,16 +150,15 @@ ColourScale colour_scale(double smallest, double largest, bool signed_values) {
   return {from_zero ? 0.0 : smallest, largest, viridis()};
 }
 
+ColourScale colour_scale(const Extent& extent, bool signed_values) {
+  if (extent.low > extent.high) return colour_scale(0.0, 0.0, signed_values);
+  return colour_scale(extent.low, extent.high, signed_values);
+}
+
 ColourScale colour_scale(const Map& map) {
-  double smallest = std::numeric_limits<double>::infinity();
-  double largest = -smallest;
-  for (const double value : map.value) {
-    if (!std::isfinite(value)) continue;
-    smallest = std::min(smallest, value);
-    largest = std::max(largest, value);
-  }
-  if (smallest > largest) return colour_scale(0.0, 0.0, map.signed_values);
-  return colour_scale(smallest, largest, map.signed_values);
+  Extent extent;
+  for (const double value : map.value) extent.include(value);
+  return colour_scale(extent, map.signed_values);
 }
 
 }  // namespace photorque

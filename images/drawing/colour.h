@@ -2,8 +2,11 @@
 // perceptually uniform and readable for colour-blind readers.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "core/product.h"
 
@@ -35,6 +38,10 @@ Rgb rgb_from_lab(const Lab& colour);
 
 // Components rounded to 0 … 255.
 std::array<uint8_t, 3> rgb_bytes(const Rgb& colour);
+// An opaque pixel 0xFFRRGGBB.
+constexpr uint32_t opaque_argb(const std::array<uint8_t, 3>& rgb) {
+  return 0xFF000000u | uint32_t{rgb[0]} << 16 | uint32_t{rgb[1]} << 8 | uint32_t{rgb[2]};
+}
 // Colour 0xRRGGBB.
 constexpr Rgb rgb_from_hex(uint32_t hex) {
   return {((hex >> 16) & 0xFF) / 255.0, ((hex >> 8) & 0xFF) / 255.0, (hex & 0xFF) / 255.0};
@@ -72,7 +79,20 @@ struct ColourScale {
 // values get a scale that shows them as constant.
 ColourScale colour_scale(double smallest, double largest, bool signed_values);
 
-// Scale for the finite values of a map; [0, 1] or [−1, 1] if there are none.
+// Range of the finite values that it includes; low > high if there are none.
+struct Extent {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+  void include(double value, bool log = false) {
+    if (!std::isfinite(value) || (log && value <= 0.0)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+// Scale for the values of a range, or the finite values of a map; [0, 1] or [−1, 1] if there are
+// none.
+ColourScale colour_scale(const Extent& extent, bool signed_values);
 ColourScale colour_scale(const Map& map);
 
 }  // namespace photorque

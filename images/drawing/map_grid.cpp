@@ -33,11 +33,6 @@ double mean_of(const Map& map, const Cells& columns, const Cells& rows) {
   return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
-uint32_t opaque(const Rgb& colour) {
-  const auto [red, green, blue] = rgb_bytes(colour);
-  return 0xFF000000u | uint32_t{red} << 16 | uint32_t{green} << 8 | uint32_t{blue};
-}
-
 // Value of a bin, outside of the map of the nearest one; NaN if it has none.
 double value_at(const Map& map, double x, double y) {
   const int column = std::clamp(static_cast<int>(x), 0, map.width - 1);
@@ -179,7 +174,7 @@ class SmoothField {
       const double ink = darkest * std::clamp(half_width + 0.5 - away, 0.0, 1.0);
       for (double* channel : {&colour.red, &colour.green, &colour.blue}) *channel *= 1.0 - ink;
     }
-    return opaque(colour);
+    return opaque_argb(rgb_bytes(colour));
   }
 
   double value(int column, int row) const {
@@ -214,7 +209,7 @@ std::vector<uint32_t> plain_pixels(const Map& map, const ColourScale& scale, int
     for (int column = 0; column < columns; ++column) {
       const double value = mean_of(map, cells_under(column, columns, map.width), map_rows);
       if (!std::isnan(value))
-        pixels[static_cast<size_t>(row) * columns + column] = opaque(scale(value));
+        pixels[static_cast<size_t>(row) * columns + column] = opaque_argb(rgb_bytes(scale(value)));
     }
   }
   return pixels;
@@ -326,7 +321,8 @@ std::vector<uint32_t> map_pixels(const Map& map, const ColourScale& scale, int c
     for (int column = 0; column < columns; ++column) {
       uint32_t& pixel = pixels[static_cast<size_t>(row) * columns + column];
       if (pixel == 0u) continue;
-      if (unsure && unsure->at(column, row, columns, rows)) pixel = opaque(unsure_grey);
+      if (unsure && unsure->at(column, row, columns, rows))
+        pixel = opaque_argb(rgb_bytes(unsure_grey));
       const double part = part_within_rim(round, column, row, columns, rows);
       pixel = (pixel & 0x00FFFFFFu) | static_cast<uint32_t>(std::lround(255.0 * part)) << 24;
     }

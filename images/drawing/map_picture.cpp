@@ -26,6 +26,11 @@ struct MapLayout {
   double width = 0.0;
 };
 
+// Colour of letters on this ground.
+Rgb ink_on(const Rgb& ground) {
+  return lab_from_rgb(ground).lightness > 55.0 ? ink : Rgb{1.0, 1.0, 1.0};
+}
+
 PageBox grid_size(const Map& map, double scale = 1.0) {
   double ratio = 4.0 / 3.0;
   if (map.equal_scale) {
@@ -92,7 +97,7 @@ void draw_cell_numbers(Canvas& canvas, const Map& map, const ColourScale& scale,
       const double value = map.value[static_cast<size_t>(row) * map.width + column];
       if (!std::isfinite(value)) continue;
       TextStyle style{.size = std::clamp(0.2 * std::min(width, height), 6.5, 12.0)};
-      style.colour = lab_from_rgb(scale(value)).lightness > 55.0 ? ink : Rgb{1.0, 1.0, 1.0};
+      style.colour = ink_on(scale(value));
       style.align = TextAlign::centre;
       style.level = TextLevel::middle;
       const TextBlock text = fitted_text(readable_number(value, 3), width - 3.0, style, 5.0, 1);
@@ -168,7 +173,7 @@ void draw_contour_labels(Canvas& canvas, const Map& map, const MapLayout& layout
     canvas.fill(std::array{corner(-half, -tall), corner(half, -tall), corner(half, tall),
                            corner(-half, tall)},
                 ground);
-    style.colour = lab_from_rgb(ground).lightness > 55.0 ? ink : Rgb{1.0, 1.0, 1.0};
+    style.colour = ink_on(ground);
     style.turn_rad = label.turn_rad;
     canvas.text(label.text, at, style);
   }
@@ -269,15 +274,13 @@ std::string map_html(const Map& map) {
 }
 
 std::string map_caption(const Map& map) {
-  double smallest = std::numeric_limits<double>::infinity();
-  double largest = -smallest;
+  Extent extent;
   double sum = 0.0, weights = 0.0;
   size_t count = 0;
   for (size_t bin = 0; bin < map.value.size(); ++bin) {
     const double value = map.value[bin], weight = map.weight.empty() ? 1.0 : map.weight[bin];
     if (!std::isfinite(value)) continue;
-    smallest = std::min(smallest, value);
-    largest = std::max(largest, value);
+    extent.include(value);
     sum += weight * value;
     weights += weight;
     ++count;
@@ -288,8 +291,8 @@ std::string map_caption(const Map& map) {
   if (count == 0) return "no values · " + bins;
   // Nodes of a smooth field need not represent equal areas, so that no mean is stated.
   const std::string mean = map.smooth ? "" : "mean " + readable_number(sum / weights) + " · ";
-  std::string caption = "min " + readable_number(smallest) + " · " + mean + "max " +
-                        readable_number(largest) + (map.unit.empty() ? "" : " " + map.unit) +
+  std::string caption = "min " + readable_number(extent.low) + " · " + mean + "max " +
+                        readable_number(extent.high) + (map.unit.empty() ? "" : " " + map.unit) +
                         " · " + bins;
   if (!map.standard_error.empty()) {
     caption +=

@@ -135,8 +135,7 @@ void draw_colour_bar(Canvas& canvas, const ColourBar& bar, const PagePoint& top_
                      double height) {
   std::vector<uint32_t> colours;
   for (size_t i = bar.scale.map.colours.size(); i-- > 0;) {
-    const auto [red, green, blue] = rgb_bytes(bar.scale.map.colours[i]);
-    colours.push_back(0xFF000000u | uint32_t{red} << 16 | uint32_t{green} << 8 | uint32_t{blue});
+    colours.push_back(opaque_argb(rgb_bytes(bar.scale.map.colours[i])));
   }
   const PageBox box{top_left.x, top_left.y, colour_bar_thickness, height};
   canvas.image(box, 1, static_cast<int>(colours.size()), colours);

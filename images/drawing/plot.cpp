@@ -14,16 +14,6 @@ constexpr double gap_right_of_frame = 6.0;
 constexpr Rgb grid_grey = {0.87, 0.87, 0.87};
 constexpr Rgb shade = rgb_from_hex(0xE6EDF5);
 
-struct Extent {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-  void include(double value, bool log) {
-    if (!std::isfinite(value) || (log && value <= 0.0)) return;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-};
-
 // Range with a margin on both sides.
 AxisRange padded(const Extent& extent, bool log, double margin) {
   if (extent.low > extent.high) return log ? AxisRange{1.0, 10.0} : AxisRange{0.0, 1.0};

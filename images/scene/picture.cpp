@@ -74,8 +74,7 @@ void draw_triad(Canvas& canvas, const PagePoint& origin, const std::array<Vec3, 
 std::vector<uint32_t> as_argb(const Picture& picture) {
   std::vector<uint32_t> argb;
   for (size_t i = 0; i < picture.rgb.size(); i += 3) {
-    argb.push_back(0xFF000000u | uint32_t{picture.rgb[i]} << 16 |
-                   uint32_t{picture.rgb[i + 1]} << 8 | uint32_t{picture.rgb[i + 2]});
+    argb.push_back(opaque_argb({picture.rgb[i], picture.rgb[i + 1], picture.rgb[i + 2]}));
   }
   return argb;
 }

@@ -5,7 +5,6 @@
 
 #include "core/errors.h"
 #include "scenes/experiment/document.h"
-#include "scenes/experiment/toml.h"
 
 namespace photorque::python {
 namespace {
@@ -83,19 +82,12 @@ py::object value_of(const SettingsNode& node) {
   return std::visit(ToPython{}, node.value);
 }
 
-// Tree of the text with all overrides. Throws InputError for invalid TOML or an invalid override.
-SettingsNode tree_of(const RunOptions& options) {
-  SettingsNode root = parse_toml(*options.text, options.experiment.string());
-  for (const std::string& one : options.overrides) apply_override(root, one);
-  return root;
-}
-
 ExperimentHandle changed(ExperimentHandle experiment, const py::dict& keys) {
   for (const auto& [key, value] : keys) {
     const auto name = key.cast<std::string>();
     experiment.options.overrides.push_back(name + "=" + toml_value(settings_of(value, name)));
   }
-  tree_of(experiment.options);
+  experiment.options.settings(experiment.options.overrides);
   return experiment;
 }
 
@@ -156,7 +148,10 @@ void bind_experiment(py::module_& module) {
           "changes", [](const ExperimentHandle& self) { return self.options.overrides; },
           "KEY=VALUE of every change, in order.")
       .def(
-          "to_dict", [](const ExperimentHandle& self) { return value_of(tree_of(self.options)); },
+          "to_dict",
+          [](const ExperimentHandle& self) {
+            return value_of(self.options.settings(self.options.overrides));
+          },
           "All keys as written, with the changes.")
       .def("__repr__", [](const ExperimentHandle& self) {
         return "Experiment(\"" + self.options.experiment.string() + "\"" +

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/text/parse.h"
+#include "images/drawing/plot.h"
 #include "python/bindings/arrays.h"
 #include "tools/runs/console.h"
 
@@ -110,14 +111,6 @@ const char* style_of(const Plot::Curve& curve) {
   if (curve.markers) return "points";
   if (curve.dots) return "dots";
   return curve.dashed ? "dashed" : "line";
-}
-
-// The first panel of a plot and those below it, in one format.
-py::list panels_of(const Plot& plot) {
-  py::list panels;
-  panels.append(Plot::Panel{plot.y_label, plot.curves, plot.y_log, plot.levels, plot.robust_range});
-  for (const Plot::Panel& panel : plot.below) panels.append(panel);
-  return panels;
 }
 
 void bind_plot(py::module_& module) {

@@ -51,27 +51,17 @@ void add_result(py::class_<Run, More...>& type, const std::string& command) {
   const auto result_of = [](const py::object& self) -> const RunResult& {
     return self.cast<const Run&>().result;
   };
+  const auto views = [result_of](auto Product::*items) {
+    return [result_of, items](const py::object& self) {
+      return views_of(result_of(self).product.*items, self);
+    };
+  };
   type.def_property_readonly(
           "figures", [result_of](const py::object& self) { return figures_of(result_of(self)); },
           "Headline figures with their standard errors, by name; the unit is the name's end.")
-      .def_property_readonly(
-          "tables",
-          [result_of](const py::object& self) {
-            return views_of(result_of(self).product.tables, self);
-          },
-          "Tables by name.")
-      .def_property_readonly(
-          "maps",
-          [result_of](const py::object& self) {
-            return views_of(result_of(self).product.maps, self);
-          },
-          "Maps by name.")
-      .def_property_readonly(
-          "plots",
-          [result_of](const py::object& self) {
-            return views_of(result_of(self).product.plots, self);
-          },
-          "Curves by name.")
+      .def_property_readonly("tables", views(&Product::tables), "Tables by name.")
+      .def_property_readonly("maps", views(&Product::maps), "Maps by name.")
+      .def_property_readonly("plots", views(&Product::plots), "Curves by name.")
       .def(
           "plot",
           [](const py::object& self, const py::object& name, const py::object& axes) {

@@ -9,6 +9,7 @@
 
 #include "core/errors.h"
 #include "images/browser/content.h"
+#include "tests/files.h"
 
 namespace photorque {
 namespace {
@@ -42,12 +43,6 @@ SceneStage stage_of_one() {
   return stage;
 }
 
-size_t count(const std::string& text, const std::string& what) {
-  size_t found = 0;
-  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
-  return found;
-}
-
 TEST(RunPage, NamesNeverBecomeMarkup) {
   const std::string hostile = "</script><script>alert(1)</script><!-- \xE2\x80\xA8 & \xff";
   RunPage page;
@@ -67,12 +62,12 @@ TEST(RunPage, NamesNeverBecomeMarkup) {
   page.stage->parts[0].name = page.stage->remark = hostile;
   page.stage->lamps = {{hostile}};
   const std::string html = page_html(page);
-  EXPECT_EQ(count(html, "<script"), 2u);
-  EXPECT_EQ(count(html, "</script"), 2u);
-  EXPECT_EQ(count(html, "<!--"), 0u);
-  EXPECT_GT(count(html, "\\u003c/script\\u003e"), 10u);
+  EXPECT_EQ(occurrences(html, "<script"), 2u);
+  EXPECT_EQ(occurrences(html, "</script"), 2u);
+  EXPECT_EQ(occurrences(html, "<!--"), 0u);
+  EXPECT_GT(occurrences(html, "\\u003c/script\\u003e"), 10u);
   const std::string content = script_text(page_content(page, {}));
-  EXPECT_EQ(count(content, "\xE2\x80\xA8"), 0u);  // ends a line of a script
+  EXPECT_EQ(occurrences(content, "\xE2\x80\xA8"), 0u);  // ends a line of a script
   EXPECT_EQ(content.find_first_of("<>&"), std::string::npos);
   EXPECT_TRUE(html == page_html(page));
 }
@@ -80,14 +75,14 @@ TEST(RunPage, NamesNeverBecomeMarkup) {
 // Nothing on the page may ask for anything outside of it, and the policy would forbid it.
 TEST(RunPage, NeedsNoNetwork) {
   const std::string html = page_html({});
-  EXPECT_EQ(count(html, "default-src 'none'"), 1u);
-  EXPECT_EQ(count(html, "script-src 'unsafe-inline'"), 0u);
+  EXPECT_EQ(occurrences(html, "default-src 'none'"), 1u);
+  EXPECT_EQ(occurrences(html, "script-src 'unsafe-inline'"), 0u);
   std::smatch nonce;
   const std::string head = html.substr(0, 1000);
   ASSERT_TRUE(std::regex_search(head, nonce, std::regex("script-src 'nonce-([0-9a-f]{32})'")));
-  EXPECT_EQ(count(html, "<script nonce=\"" + nonce[1].str() + "\">"), 1u);
+  EXPECT_EQ(occurrences(html, "<script nonce=\"" + nonce[1].str() + "\">"), 1u);
   EXPECT_FALSE(std::regex_search(std::string(page_style()), std::regex("url\\(|@import")));
-  EXPECT_EQ(count(html, " src=") + count(html, "<link"), 0u);
+  EXPECT_EQ(occurrences(html, " src=") + occurrences(html, "<link"), 0u);
   EXPECT_GT(page_script().size(), 100'000u);
 }
 

@@ -3,43 +3,35 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <set>
 
 #include "core/files.h"
 #include "core/provenance.h"
+#include "tests/images/sample_product.h"
 
 namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Staged : public ::testing::Test {
+class Staged : public FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / ("staged_" + std::to_string(::getpid()));
-    fs::remove_all(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   void run(const std::string& command, const std::set<std::string>& files) {
-    StagedFiles staged(folder_);
+    StagedFiles staged(folder);
     for (const std::string& name : files) write_file_whole(staged.path() / name, command);
     staged.publish_as(command, build_provenance());
   }
   std::set<std::string> there() const {
     std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
+    for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename());
     return names;
   }
-
-  fs::path folder_;
 };
 
 TEST_F(Staged, FilesOfTheLastRunDoNotStayBesideNewOnes) {
   run("trace", {"a.csv", "b.csv", "summary.json"});
-  write_file_whole(folder_ / "of_the_user.csv", "mine");
+  write_file_whole(folder / "of_the_user.csv", "mine");
   run("trace", {"b.csv", "summary.json"});
   EXPECT_THAT(there(), testing::UnorderedElementsAre("b.csv", "files.json", "of_the_user.csv",
                                                      "summary.json"));
@@ -51,37 +43,35 @@ TEST_F(Staged, FilesOfOtherCommandsStay) {
   run("trace", {"a.csv"});
   EXPECT_THAT(there(),
               testing::UnorderedElementsAre("a.csv", "files.json", "iv.csv", "shared.csv"));
-  EXPECT_EQ(read_file(folder_ / "shared.csv"), "power");
+  EXPECT_EQ(read_file(folder / "shared.csv"), "power");
 }
 
 TEST_F(Staged, FilesOfTheUserWithTheNamesOfResultsAreKept) {
-  fs::create_directories(folder_);
-  write_file_whole(folder_ / "recording.csv", "mine");
+  write_file_whole(folder / "recording.csv", "mine");
   run("propagate", {"recording.csv"});
   run("propagate", {"recording.csv"});
   EXPECT_THAT(there(),
               testing::UnorderedElementsAre("files.json", "recording.csv", "recording.csv~"));
-  EXPECT_EQ(read_file(folder_ / "recording.csv~"), "mine");
-  EXPECT_EQ(read_file(folder_ / "recording.csv"), "propagate");
-  EXPECT_TRUE(is_result_of(folder_, "propagate", "recording.csv"));
-  EXPECT_FALSE(is_result_of(folder_, "trace", "recording.csv"));
-  EXPECT_FALSE(is_result_of(folder_, "propagate", "recording.csv~"));
+  EXPECT_EQ(read_file(folder / "recording.csv~"), "mine");
+  EXPECT_EQ(read_file(folder / "recording.csv"), "propagate");
+  EXPECT_TRUE(is_result_of(folder, "propagate", "recording.csv"));
+  EXPECT_FALSE(is_result_of(folder, "trace", "recording.csv"));
+  EXPECT_FALSE(is_result_of(folder, "propagate", "recording.csv~"));
 }
 
 TEST_F(Staged, AListOfTheUserIsKept) {
-  fs::create_directories(folder_);
-  write_file_whole(folder_ / "files.json", "[\"mine\"]");
+  write_file_whole(folder / "files.json", "[\"mine\"]");
   run("trace", {"a.csv"});
   run("trace", {"a.csv"});
   EXPECT_THAT(there(), testing::UnorderedElementsAre("a.csv", "files.json", "files.json~"));
-  EXPECT_EQ(read_file(folder_ / "files.json~"), "[\"mine\"]");
-  EXPECT_TRUE(is_result_of(folder_, "trace", "a.csv"));
+  EXPECT_EQ(read_file(folder / "files.json~"), "[\"mine\"]");
+  EXPECT_TRUE(is_result_of(folder, "trace", "a.csv"));
 }
 
 TEST_F(Staged, ListsThatWereTamperedWithReachNoOtherFolder) {
-  const fs::path outside = folder_.string() + "_outside.csv";
+  const fs::path outside = folder.string() + "_outside.csv";
   write_file_whole(outside, "precious");
-  write_file_whole(folder_ / "files.json",
+  write_file_whole(folder / "files.json",
                    R"({"schema": "photorque.files/1", "commands": {"trace": {"files": ["../)" +
                        outside.filename().string() + R"(", 7, "..", ""]}, "x": 3}})");
   run("trace", {"a.csv"});
@@ -92,9 +82,8 @@ TEST_F(Staged, ListsThatWereTamperedWithReachNoOtherFolder) {
 // Found by reading for it: a list that is nested deeply ended the program by a signal after its
 // work.
 TEST_F(Staged, ListsNestedDeeplyAreNone) {
-  fs::create_directories(folder_);
   constexpr size_t deep = 300000;
-  write_file_whole(folder_ / "files.json",
+  write_file_whole(folder / "files.json",
                    R"({"schema": "photorque.files/1", "commands": {"trace": )" +
                        std::string(deep, '[') + std::string(deep, ']') + "}}");
   run("trace", {"summary.json"});
@@ -103,10 +92,10 @@ TEST_F(Staged, ListsNestedDeeplyAreNone) {
 
 TEST_F(Staged, UnpublishedFilesAreRemovedWithTheirFolder) {
   {
-    const StagedFiles staged(folder_ / "deep" / "er");
+    const StagedFiles staged(folder / "deep" / "er");
     write_file_whole(staged.path() / "a.csv", "a");
   }
-  EXPECT_FALSE(fs::exists(folder_ / "deep"));
+  EXPECT_FALSE(fs::exists(folder / "deep"));
 }
 
 }  // namespace

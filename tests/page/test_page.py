@@ -170,6 +170,28 @@ class PageTest(unittest.TestCase):
             self.assertTrue(style != "none" and width >= 2, f"control {at} does not show its focus")
         self.assertEqual(len(reached), wanted)
 
+    def text(self, selector):
+        return self.browser.value(f"document.querySelector('{selector}').textContent")
+
+    def slide_to(self, value):
+        """Moves the first slider; `value` is JavaScript."""
+        self.browser.value(f"""(() => {{
+          const slider = document.getElementById('axis-0');
+          slider.value = {value};
+          slider.dispatchEvent(new Event('input'));
+        }})()""")
+
+    def read_map_at(self, across, down):
+        """What the first map shows at these fractions of its width and height, from the upper left."""
+        left, top, width, height = self.browser.value("""(() => {
+          const field = document.querySelector('.field');
+          field.scrollIntoView({ block: 'center' });
+          const b = field.getBoundingClientRect();
+          return [b.left, b.top, b.width, b.height];
+        })()""")
+        self.browser.point(left + across * width, top + down * height)
+        return self.text(".map-section .reading b")
+
     def readings(self):
         """The readings beside the stage, in order: [label, value]."""
         return self.browser.value("""[...document.querySelectorAll('.readings dt')].map(
@@ -239,22 +261,15 @@ class Trace(PageTest):
         self.open(self.page)
         bins = {(float(row["x_m"]), float(row["y_m"])): row for row in rows(self.out / "irradiance_solar_array.csv")}
         columns, lines = (sorted({place[k] for place in bins}) for k in (0, 1))
-        box = self.browser.value("""(() => {
-          const field = document.querySelector('.field');
-          field.scrollIntoView({ block: 'center' });
-          const b = field.getBoundingClientRect();
-          return [b.left, b.top, b.width, b.height];
-        })()""")
-        self.browser.point(box[0] + 0.305 * box[2], box[1] + 0.505 * box[3])
-        text = self.browser.value("document.querySelector('.map-section .reading b').textContent")
+        text = self.read_map_at(0.305, 0.505)
         self.assertTrue(text.endswith(" W/m²"), text)
         under_pointer = bins[columns[30], lines[49]]  # of 100 × 100, rows from below
         shown, half = number(text)
         self.assertLess(abs(shown - float(under_pointer["value_W_m2"])), half + 1e-7 * shown)  # single precision
-        before = self.browser.value("document.querySelector('.map-section .reading').textContent")
+        before = self.text(".map-section .reading")
         self.browser.value("document.querySelector('.field').focus()")
         self.browser.key("ArrowRight")
-        self.assertNotEqual(before, self.browser.value("document.querySelector('.map-section .reading').textContent"))
+        self.assertNotEqual(before, self.text(".map-section .reading"))
 
     def test_stage_turns_by_keys(self):
         self.open(self.page)
@@ -283,7 +298,7 @@ class TorqueMap(PageTest):
         self.browser.value("document.getElementById('axis-0').focus()")
         self.browser.key("ArrowRight")
         self.browser.key("ArrowRight")
-        self.assertEqual(self.browser.value("document.querySelector('.axis output').textContent"), "30 deg")
+        self.assertEqual(self.text(".axis output"), "30 deg")
         self.assertNotEqual(upright, self.stage())
         row = next(r for r in rows(out / "wrench_table_body.csv")
                    if float(r["tilt_deg"]) == 30.0 and float(r["heading_deg"]) == 0.0)
@@ -298,19 +313,11 @@ class TorqueMap(PageTest):
 
 
 class Propagate(PageTest):
-    def go_to(self, last):
-        """The slider at its first or last instant."""
-        self.browser.value(f"""(() => {{
-          const slider = document.getElementById('axis-0');
-          slider.value = {'slider.max' if last else '0'};
-          slider.dispatchEvent(new Event('input'));
-        }})()""")
-
     def compare_with_history(self, out):
         history = rows(out / "time_history.csv")
         stages = []
         for last in (False, True):
-            self.go_to(last)
+            self.slide_to("slider.max" if last else 0)
             stages.append(self.stage())
             shown, row = dict(self.readings()), history[-1 if last else 0]
             self.assertShown(shown["tilt"], float(row["tilt_deg"]))
@@ -327,7 +334,7 @@ class Propagate(PageTest):
         run("propagate", SOURCE / "scenes/stasis/attitude.toml", "--set", "propagate.duration_s=60", "--page", "--out", out, "--quiet")
         self.open(out / "page.html")
         self.compare_with_history(out)
-        self.go_to(False)
+        self.slide_to(0)
         line = self.browser.value("document.querySelector('.cursor').getAttribute('x1')")
         self.browser.value("document.querySelector('.play').click()")
         for _ in range(5):
@@ -371,8 +378,7 @@ class Diagnose(PageTest):
         self.open(out / "report.html")
         found = json.loads((out / "diagnosis.json").read_text())
         self.assertEqual(found["effects"][0]["kind"], "magnetic_dipole")
-        self.assertEqual(self.browser.value("document.querySelector('.verdict-words').textContent"),
-                         "\u25c6Missing physics found")
+        self.assertEqual(self.text(".verdict-words"), "\u25c6Missing physics found")
         self.assertEqual(self.browser.value("document.querySelector('.finding h3').firstChild.textContent"), "magnetic dipole")
         dipole = found["effects"][0]["parameters"]["dipole_A_m2"]
         shown = self.browser.value("""[...document.querySelector('.finding').querySelectorAll('[data-key]')].map(
@@ -382,8 +388,7 @@ class Diagnose(PageTest):
         self.assertFiguresAgree(found)
         # The platform moves, and the readings of the residual decrease with the improved model.
         before = self.stage()
-        self.browser.value("""(() => { const slider = document.getElementById('axis-0');
-          slider.value = 300; slider.dispatchEvent(new Event('input')); })()""")
+        self.slide_to(300)
         self.assertNotEqual(before, self.stage())
         readings = dict(self.readings())
         self.assertIn("tilt, measured", readings)
@@ -428,14 +433,7 @@ class Diagnose(PageTest):
         names = self.browser.value("[...document.querySelectorAll('.map-section option')].map((o) => o.textContent)")
         self.assertEqual([name.split(":")[0] for name in names],
                          ["Measured", "Nominal model", "Measured minus nominal model", "Measured minus improved model"])
-        box = self.browser.value("""(() => {
-          const field = document.querySelector('.field');
-          field.scrollIntoView({ block: 'center' });
-          const b = field.getBoundingClientRect();
-          return [b.left, b.top, b.width, b.height];
-        })()""")
-        self.browser.point(box[0] + 0.525 * box[2], box[1] + 0.475 * box[3])  # of 20 x 20: the eleventh, from below too
-        text = self.browser.value("document.querySelector('.map-section .reading b').textContent")
+        text = self.read_map_at(0.525, 0.475)  # of 20 x 20: the eleventh, from below too
         value = next(float(v) for x, y, v in scan if abs(float(x) - 0.005) < 1e-6 and abs(float(y) - 0.005) < 1e-6)
         shown, half = number(text)
         self.assertLess(abs(shown - value), half + 1e-6 * value, text)
@@ -451,7 +449,7 @@ class Hostile(PageTest):
         self.assertEqual(self.browser.value("document.querySelectorAll('script').length"), 2)
         self.assertEqual(self.browser.value("document.querySelectorAll('img, main b > b, main i > i').length"), 0)
         self.assertIn(HOSTILE, self.browser.value("document.body.innerText"))
-        self.assertTrue(self.browser.value("document.querySelector('h1').textContent").startswith("<i>lab&amp;"))
+        self.assertTrue(self.text("h1").startswith("<i>lab&amp;"))
         self.assertGreater(self.colours(), 50)
 
 

@@ -1,5 +1,6 @@
 """Shared by the tests of the module: the program beside it, and folders to compare."""
 
+import csv
 import os
 import pathlib
 import subprocess
@@ -24,6 +25,12 @@ def files_of(folder):
     return found
 
 
+def rows_of(content):
+    """The rows of a CSV file by the names of its columns."""
+    lines = [line for line in content.decode().splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(lines))
+
+
 class FolderTest(unittest.TestCase):
     """Has a separate folder."""
 
@@ -32,10 +39,12 @@ class FolderTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def run_program(self, *arguments):
-        """The program's files by name."""
+    def run_program(self, *arguments, keys=None):
+        """The program's files by name; with changed keys of its experiment."""
         out = self.folder / "program"
-        command = [program, *map(str, arguments), "--quiet", "--out", str(out)]
+        changes = [word for key, value in (keys or {}).items()
+                   for word in ("--set", f"{key}={value}")]
+        command = [program, *map(str, arguments), *changes, "--quiet", "--out", str(out)]
         subprocess.run(command, check=True)
         return files_of(out)
 

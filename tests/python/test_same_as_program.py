@@ -1,31 +1,27 @@
 """Every run gives the program's files, byte for byte."""
 
-import csv
-import io
 import pathlib
 import unittest
 
 import numpy as np
 import photorque
-from support import FolderTest, attitude, nominal
+from support import FolderTest, attitude, nominal, rows_of
 
 few_rays = {"trace.rays": 65536}
 
 
 class SameAsProgram(FolderTest):
     def test_trace(self):
-        files = self.run_program("trace", nominal, "--set", "trace.rays=65536")
+        files = self.run_program("trace", nominal, keys=few_rays)
         traced = photorque.trace(photorque.Experiment(nominal, keys=few_rays))
         self.assert_same_files(traced, files, 10)
 
     def test_power_and_its_numbers(self):
-        experiment = photorque.Experiment(nominal, keys=few_rays | {"attitude.tilt_deg": 30})
-        files = self.run_program("power", nominal, "--set", "trace.rays=65536", "--set",
-                                 "attitude.tilt_deg=30")
-        power = photorque.power(experiment)
+        keys = few_rays | {"attitude.tilt_deg": 30}
+        files = self.run_program("power", nominal, keys=keys)
+        power = photorque.power(photorque.Experiment(nominal, keys=keys))
         self.assert_same_files(power, files, 20)
-        rows = [line for line in files["iv.csv"].decode().splitlines() if not line.startswith("#")]
-        table = list(csv.DictReader(io.StringIO("\n".join(rows))))
+        table = rows_of(files["iv.csv"])
         for column in ("voltage_V", "current_A", "power_W"):
             np.testing.assert_array_equal([float(row[column]) for row in table],
                                           power.curve[column])
@@ -33,9 +29,7 @@ class SameAsProgram(FolderTest):
 
     def test_torque_map(self):
         keys = {"trace.rays": 65536, "torque_map.tilt_deg": [0, 30], "torque_map.heading_deg": [0, 90]}
-        files = self.run_program("torque-map", nominal, "--set", "trace.rays=65536", "--set",
-                                 "torque_map.tilt_deg=[0, 30]", "--set",
-                                 "torque_map.heading_deg=[0, 90]")
+        files = self.run_program("torque-map", nominal, keys=keys)
         table = photorque.torque_map(photorque.Experiment(nominal, keys=keys))
         self.assert_same_files(table, files, 5)
         self.assertEqual(table.torque_body_N_m.shape, (2, 2, 3))
@@ -48,8 +42,7 @@ class SameAsProgram(FolderTest):
     def test_page_of_a_torque_map(self):
         keys = {"trace.rays": 25088, "torque_map.tilt_deg": [0, 30], "torque_map.heading_deg": [0]}
         experiment = photorque.Experiment(nominal, keys=keys)
-        files = self.run_program("torque-map", nominal, "--set", "trace.rays=25088", "--set",
-                                 "torque_map.tilt_deg=[0, 30]", "--set", "torque_map.heading_deg=[0]", "--page")
+        files = self.run_program("torque-map", nominal, "--page", keys=keys)
         table = photorque.torque_map(experiment, page=True)
         written = pathlib.Path(table.write_page(self.folder / "own.html")).read_bytes()
 
@@ -66,8 +59,7 @@ class SameAsProgram(FolderTest):
     def test_render(self):
         small = {"trace.rays": 25088, "camera.width": 160, "camera.height": 120}
         rendered = photorque.render(photorque.Experiment(nominal, keys=small))
-        files = self.run_program("render", nominal, *(word for key, value in small.items()
-                                                      for word in ("--set", f"{key}={value}")))
+        files = self.run_program("render", nominal, keys=small)
         written = pathlib.Path(rendered.write(self.folder / "module")).read_bytes()
         self.assertTrue(written == files["render.png"])
         pixels = rendered.pixels
@@ -86,10 +78,9 @@ class SameAsProgram(FolderTest):
         self.assertEqual(sizes, sorted(sizes, reverse=True))
 
     def test_propagate(self):
-        files = self.run_program("propagate", attitude, "--seed", "7", "--set",
-                                 "propagate.duration_s=20")
-        motion = photorque.propagate(
-            photorque.Experiment(attitude, keys={"propagate.duration_s": 20}), seed=7)
+        short = {"propagate.duration_s": 20}
+        files = self.run_program("propagate", attitude, "--seed", "7", keys=short)
+        motion = photorque.propagate(photorque.Experiment(attitude, keys=short), seed=7)
         self.assert_same_files(motion, files, 5)
         np.testing.assert_array_equal(motion.time_s, motion.recording["t_s"])
         np.testing.assert_allclose(np.linalg.norm(motion.attitude_wxyz, axis=1), 1, rtol=1e-14)

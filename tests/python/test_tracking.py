@@ -1,12 +1,10 @@
 """camera() and estimate(): the program's files, and their numbers as arrays."""
 
-import csv
-import io
 import unittest
 
 import numpy as np
 import photorque
-from support import FolderTest, source
+from support import FolderTest, rows_of, source
 
 board = source / "scenes" / "stasis" / "camera.toml"
 
@@ -14,8 +12,7 @@ board = source / "scenes" / "stasis" / "camera.toml"
 class Tracking(FolderTest):
     def test_camera(self):
         few = {"camera_study.images": 20, "camera_study.grid": 5}
-        files = self.run_program("camera", board, "--set", "camera_study.images=20", "--set",
-                                 "camera_study.grid=5")
+        files = self.run_program("camera", board, keys=few)
         camera = photorque.camera(photorque.Experiment(board, keys=few))
         # The paper's camera, from a board that docs/estimation.md states.
         self.assertAlmostEqual(camera.figures["in_plane_error_arcsec"].value, 12, delta=1)
@@ -29,13 +26,11 @@ class Tracking(FolderTest):
 
     def test_estimate(self):
         short = {"propagate.duration_s": 20, "estimate.runs": 0}
-        files = self.run_program("estimate", board, "--set", "propagate.duration_s=20", "--set",
-                                 "estimate.runs=0")
+        files = self.run_program("estimate", board, keys=short)
         found = photorque.estimate(photorque.Experiment(board, keys=short))
         self.assert_same_files(found, files, 4)
         smoothed, filtered = found.smoothed(), found.filtered()
-        rows = [line for line in files["smoothed.csv"].decode().splitlines() if line[0] != "#"]
-        table = list(csv.DictReader(io.StringIO("\n".join(rows))))
+        table = rows_of(files["smoothed.csv"])
         np.testing.assert_array_equal([float(row["t_s"]) for row in table], smoothed["t_s"])
         np.testing.assert_allclose([float(row["q_x"]) for row in table],
                                    smoothed["attitude_wxyz"][:, 1], rtol=0, atol=1e-15)

@@ -14,16 +14,25 @@ namespace {
 
 using testing::HasSubstr;
 
-class ArrayCommand : public CommandTest {};
+const std::string lit_plate =
+    "o plate\nv -0.4 -0.1 0\nv 0.4 -0.1 0\nv 0.4 0.1 0\nv -0.4 0.1 0\nusemtl m\nf 1 2 3 4\n";
+
+class ArrayCommand : public CommandTest {
+ protected:
+  // `fit-cell` with this [fit], into "out".
+  Outcome fit(const std::string& text, const std::string& options = "") const {
+    return succeed("fit-cell " + write("fit.toml", "[fit]\n" + text) + options + " --out " +
+                   at("out"));
+  }
+};
 
 // A measured module of 36 cells at two irradiances.
 TEST_F(ArrayCommand, FitsADatasheetAndPrintsTheCell) {
-  write("fit.toml",
-        "[fit]\ncells_in_series = 36\n[[fit.datasheet]]\nirradiance_W_m2 = 1000\n"
-        "short_circuit_A = 5.116\nopen_circuit_V = 22.05\nmaximum_A = 4.66\nmaximum_V = 17.63\n"
-        "[[fit.datasheet]]\nirradiance_W_m2 = 200\nshort_circuit_A = 1.029\n"
-        "open_circuit_V = 20.38\nmaximum_A = 0.939\nmaximum_V = 17.04\n");
-  const Outcome got = succeed("fit-cell " + at("fit.toml") + " --out " + at("out"));
+  const Outcome got =
+      fit("cells_in_series = 36\n[[fit.datasheet]]\nirradiance_W_m2 = 1000\n"
+          "short_circuit_A = 5.116\nopen_circuit_V = 22.05\nmaximum_A = 4.66\nmaximum_V = 17.63\n"
+          "[[fit.datasheet]]\nirradiance_W_m2 = 200\nshort_circuit_A = 1.029\n"
+          "open_circuit_V = 20.38\nmaximum_A = 0.939\nmaximum_V = 17.04\n");
   EXPECT_THAT(got.out, HasSubstr("series_ohm"));
   EXPECT_THAT(got.out, HasSubstr("saturation_1_A = "));
   EXPECT_THAT(file_text(at("out/summary.json")), HasSubstr("\"ideality\""));
@@ -42,8 +51,7 @@ TEST_F(ArrayCommand, AParameterWithoutAnyErrorIsNotDetermined) {
 
 // Half-cut module under uneven light: twice the power of one of its two groups.
 TEST_F(ArrayCommand, TwinModulesAreOneCircuit) {
-  write("plate.obj",
-        "o plate\nv -0.4 -0.1 0\nv 0.4 -0.1 0\nv 0.4 0.1 0\nv -0.4 0.1 0\nusemtl m\nf 1 2 3 4\n");
+  write("plate.obj", lit_plate);
   std::string doubled =
       "[scene]\nfile = \"plate.obj\"\nunit = \"m\"\n[[material]]\nname = \"m\"\nabsorptance = 1\n"
       "[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\nirradiance_W_m2 = 1000\n"
@@ -66,8 +74,7 @@ TEST_F(ArrayCommand, TwinModulesAreOneCircuit) {
 
 // 500 W/m² on the back with a bifaciality of 0.8 are 400 W/m² on the front (IEC TS 60904-1-2).
 TEST_F(ArrayCommand, LightOnTheBackCountsByItsBifaciality) {
-  write("plate.obj",
-        "o plate\nv -0.4 -0.1 0\nv 0.4 -0.1 0\nv 0.4 0.1 0\nv -0.4 0.1 0\nusemtl m\nf 1 2 3 4\n");
+  write("plate.obj", lit_plate);
   const auto plate = [&](const std::string& rest, int front_W_m2) {
     return "[scene]\nfile = \"plate.obj\"\nunit = \"m\"\n[[material]]\nname = \"m\"\n"
            "absorptance = 1\n[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\n"
@@ -108,21 +115,20 @@ TEST_F(ArrayCommand, LightOnTheBackCountsByItsBifaciality) {
 }
 
 TEST_F(ArrayCommand, AShuntThatFollowsTheLightIsNamed) {
-  write("fit.toml",
-        "[fit]\ncells_in_series = 60\n"
-        "[[fit.datasheet]]\nirradiance_W_m2 = 1000\nshort_circuit_A = 8.9731\n"
-        "open_circuit_V = 36.068\nmaximum_A = 8.1782\nmaximum_V = 28.813\n"
-        "[[fit.datasheet]]\nirradiance_W_m2 = 500\nshort_circuit_A = 4.4933\n"
-        "open_circuit_V = 34.895\nmaximum_A = 4.1057\nmaximum_V = 28.789\n"
-        "[[fit.datasheet]]\nirradiance_W_m2 = 200\nshort_circuit_A = 1.7989\n"
-        "open_circuit_V = 33.344\nmaximum_A = 1.6450\nmaximum_V = 27.981\n"
-        "[[fit.datasheet]]\nirradiance_W_m2 = 100\nshort_circuit_A = 0.8997\n"
-        "open_circuit_V = 32.171\nmaximum_A = 0.8224\nmaximum_V = 27.093\n");
-  const Outcome got = succeed("fit-cell " + at("fit.toml") + " --out " + at("out"));
+  const std::string sheet =
+      "cells_in_series = 60\n"
+      "[[fit.datasheet]]\nirradiance_W_m2 = 1000\nshort_circuit_A = 8.9731\n"
+      "open_circuit_V = 36.068\nmaximum_A = 8.1782\nmaximum_V = 28.813\n"
+      "[[fit.datasheet]]\nirradiance_W_m2 = 500\nshort_circuit_A = 4.4933\n"
+      "open_circuit_V = 34.895\nmaximum_A = 4.1057\nmaximum_V = 28.789\n"
+      "[[fit.datasheet]]\nirradiance_W_m2 = 200\nshort_circuit_A = 1.7989\n"
+      "open_circuit_V = 33.344\nmaximum_A = 1.6450\nmaximum_V = 27.981\n"
+      "[[fit.datasheet]]\nirradiance_W_m2 = 100\nshort_circuit_A = 0.8997\n"
+      "open_circuit_V = 32.171\nmaximum_A = 0.8224\nmaximum_V = 27.093\n";
+  const Outcome got = fit(sheet);
   EXPECT_THAT(got.out, HasSubstr("inversely proportional to the light"));
   EXPECT_THAT(got.out, HasSubstr("shunt_photocurrent_A = "));
-  const Outcome constant =
-      succeed("fit-cell " + at("fit.toml") + " --set fit.shunt='\"constant\"' --out " + at("out2"));
+  const Outcome constant = fit(sheet, " --set fit.shunt='\"constant\"'");
   EXPECT_THAT(constant.out, HasSubstr("times their rounding"));
 }
 
@@ -142,10 +148,10 @@ TEST_F(ArrayCommand, ACurveThatTheMeterClippedIsFitted) {
     text += line;
   }
   write("sweep.txt", text);
-  write("fit.toml", "[fit]\ncurves = [\"sweep.txt\"]\ncells_in_series = 1\n");
-  const Outcome got = succeed("fit-cell " + at("fit.toml") + " --out " + at("out"));
+  const std::string curve = "curves = [\"sweep.txt\"]\ncells_in_series = 1\n";
+  const Outcome got = fit(curve);
   EXPECT_THAT(got.out, HasSubstr("where the meter stays at -0.01 A"));
-  const Outcome json = run("fit-cell " + at("fit.toml") + " --json --out " + at("out2"));
+  const Outcome json = fit(curve, " --json");
   EXPECT_NEAR(value(nlohmann::json::parse(json.out), "ideality"), 1.10, 0.02) << json.out;
   EXPECT_NEAR(value(nlohmann::json::parse(json.out), "photocurrent_A"), 8.0, 0.01);
 }
@@ -155,11 +161,11 @@ TEST_F(ArrayCommand, ADayOfMeasuredCurvesHasOneSetOfParameters) {
   const fs::path day = outside::third_party("recordings/nist_day/day_a.csv.gz");
   if (!fs::exists(day)) GTEST_SKIP() << "without ../shared/recordings/nist_day/day_a.csv.gz";
   fs::copy_file(day, at("day_a.csv.gz"));
-  write("fit.toml", "[fit]\ncurves = [\"day_a.csv.gz\"]\ncells_in_series = 60\n");
-  const Outcome got = succeed("fit-cell " + at("fit.toml") + " --json --out " + at("out"));
+  const std::string curves = "curves = [\"day_a.csv.gz\"]\ncells_in_series = 60\n";
+  const Outcome got = fit(curves, " --json");
   // 4 of the 25 are left out: three with a shadow, and that of 11:40, when a cloud came.
   EXPECT_LT(value(nlohmann::json::parse(got.out), "rms_fraction"), 0.006);
-  const Outcome words = run("fit-cell " + at("fit.toml") + " --out " + at("words"));
+  const Outcome words = fit(curves);
   for (const char* curve : {"curve 5:", "curve 6:", "curve 7:", "curve 15:"}) {
     EXPECT_THAT(words.out, HasSubstr(std::string("left out day_a.csv.gz, ") + curve));
   }
@@ -206,9 +212,7 @@ TEST_F(ArrayCommand, ACompressedCurveIsTheSameCurve) {
   write("packed.csv.gz", gzip(rows));
   std::vector<std::string> outputs;
   for (const char* file : {"plain.csv", "packed.csv.gz"}) {
-    write("fit.toml", std::string("[fit]\ncurves = [\"") + file + "\"]\n");
-    const Outcome got = succeed("fit-cell " + at("fit.toml") + " --out " + at("out"));
-    outputs.push_back(got.out);
+    outputs.push_back(fit(std::string("curves = [\"") + file + "\"]\n").out);
   }
   EXPECT_EQ(outputs[0], outputs[1]);
 }
@@ -227,8 +231,7 @@ std::string tight_curve() {
 
 TEST_F(ArrayCommand, ALeakThatDoesNotShowIsALowerLimit) {
   write("tight.csv", tight_curve());
-  write("fit.toml", "[fit]\ncurves = [\"tight.csv\"]\n");
-  const Outcome got = succeed("fit-cell " + at("fit.toml") + " --out " + at("out"));
+  const Outcome got = fit("curves = [\"tight.csv\"]\n");
   EXPECT_THAT(got.out, testing::ContainsRegex("shunt_ohm +above [0-9.]+ \\(95 %\\)"));
   EXPECT_THAT(got.out, HasSubstr("# a lower limit (95 %)"));
   const std::string table = file_text(at("out/parameters.csv"));

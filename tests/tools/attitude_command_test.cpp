@@ -15,7 +15,6 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 const fs::path source = PHOTORQUE_SOURCE_DIR;
-const std::string stasis = (source / "scenes/stasis/attitude.toml").string();
 
 class AttitudeCommands : public CommandTest {};
 
@@ -84,7 +83,7 @@ initial_apm = "attitude.apm"
 }
 
 TEST_F(AttitudeCommands, PropagateWritesTheFilesOfTheContract) {
-  succeed("propagate " + stasis + " --set propagate.duration_s=30 --out " + at("o"));
+  succeed("propagate " + attitude_file + " --set propagate.duration_s=30 --out " + at("o"));
   const auto all = files("o");
   for (const char* name :
        {"summary.json", "time_history.csv", "recording.csv", "attitude.aem", "run.h5", "tilt.png",
@@ -134,7 +133,8 @@ TEST_F(AttitudeCommands, BalanceFindsTheOffsetThatMadeTheRecording) {
 }
 
 TEST_F(AttitudeCommands, BudgetRanksAndComparesWithThePaper) {
-  const Outcome got = succeed("budget " + stasis + " --verbose --format svg --out " + at("o"));
+  const Outcome got =
+      succeed("budget " + attitude_file + " --verbose --format svg --out " + at("o"));
   const size_t unbalance = got.out.find("static_unbalance"), light = got.out.find("radiation_pr");
   EXPECT_LT(unbalance, light);
   EXPECT_THAT(got.out, HasSubstr("com_resolution_m"));
@@ -261,7 +261,7 @@ TEST_F(AttitudeCommands, ABudgetEndsAndReadsItsKeys) {
       "0.09, 0], [0, 0, 0.17]]\n[[disturbance]]\nkind = \"turbine_torque\"\ntorque_N_m = 1e-6\n";
   succeed("budget " + write("b.toml", platform) + " --out " + at("o"));
   for (const char* key : {"budget.tlit_deg=10", "budget.light.foo=1"}) {
-    EXPECT_THAT(refused("budget " + stasis + " --set " + key + " --out " + at("m")),
+    EXPECT_THAT(refused("budget " + attitude_file + " --set " + key + " --out " + at("m")),
                 HasSubstr("an unknown key"))
         << key;
   }

@@ -1,8 +1,5 @@
 // `propagate --checkpoint` and that of `torque-map`: runs that are killed at random moments end as
 // if they had not been.
-#include <signal.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <random>
 #include <thread>
@@ -20,13 +17,7 @@ class CheckpointCommand : public CommandTest {
  protected:
   // The exit status of `photorque ARGUMENTS`, or −1 where it was killed after so long.
   int killed_after(const std::string& arguments, std::chrono::milliseconds length) const {
-    const std::string command =
-        "exec " + program_file + " " + arguments + " >>" + at("stdout") + " 2>>" + at("stderr");
-    const pid_t child = ::fork();
-    if (child == 0) {
-      ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-      ::_exit(127);
-    }
+    const pid_t child = start(arguments, at("stderr"));
     const auto end = std::chrono::steady_clock::now() + length;
     int status = 0;
     while (::waitpid(child, &status, WNOHANG) == 0) {
@@ -68,8 +59,7 @@ class CheckpointCommand : public CommandTest {
 };
 
 TEST_F(CheckpointCommand, KilledRunsEndAsIfTheyHadNotBeen) {
-  const std::string run_it = "propagate " + (shipped_scenes / "stasis/attitude.toml").string() +
-                             " --set propagate.duration_s=1200";
+  const std::string run_it = "propagate " + attitude_file + " --set propagate.duration_s=1200";
   succeed(run_it + " --out " + at("whole"));
   kill_until_done(run_it, 6, 700);
   const auto whole = numbers("whole");
@@ -107,7 +97,7 @@ TEST_F(CheckpointCommand, KilledRunsInLightEndAsIfTheyHadNotBeen) {
 }
 
 TEST_F(CheckpointCommand, StateOfAnotherRunIsRefused) {
-  fs::copy_file(shipped_scenes / "stasis/attitude.toml", at("e.toml"));
+  fs::copy_file(attitude_file, at("e.toml"));
   fs::copy_file(shipped_scenes / "stasis/light_torque.csv", at("light_torque.csv"));
   const std::string short_run = " --set propagate.duration_s=900 --out " + at("o") + every;
   for (int i = 0; i < 100 && !fs::exists(at("o/propagate.checkpoint")); ++i) {
@@ -130,8 +120,7 @@ TEST_F(CheckpointCommand, StateOfAnotherRunIsRefused) {
                 fs::copy_options::overwrite_existing);
   std::ofstream(at("e.toml"), std::ios::app) << "# one line more\n";
   expect_refused("", another);
-  fs::copy_file(shipped_scenes / "stasis/attitude.toml", at("e.toml"),
-                fs::copy_options::overwrite_existing);
+  fs::copy_file(attitude_file, at("e.toml"), fs::copy_options::overwrite_existing);
   std::string damaged = state;
   damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);
   write("o/propagate.checkpoint", damaged);
@@ -142,9 +131,9 @@ TEST_F(CheckpointCommand, StateOfAnotherRunIsRefused) {
 
 TEST_F(CheckpointCommand, TakesMinutesAboveZero) {
   for (const char* minutes : {"0", "-1", "soon"}) {
-    EXPECT_THAT(refused("propagate " + (shipped_scenes / "stasis/attitude.toml").string() +
-                        " --checkpoint " + minutes + " --out " + at("o")),
-                HasSubstr("expected a number of minutes > 0"));
+    EXPECT_THAT(
+        refused("propagate " + attitude_file + " --checkpoint " + minutes + " --out " + at("o")),
+        HasSubstr("expected a number of minutes > 0"));
   }
 }
 

@@ -12,7 +12,6 @@ using testing::Not;
 
 class CommandLine : public CommandTest {};
 
-const std::string attitude = (shipped_scenes / "stasis" / "attitude.toml").string();
 const std::string few_rays = " --set trace.rays=65536";
 
 // Ten digits that no file of numbers holds by chance.
@@ -196,10 +195,11 @@ TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
       {"schema --key source.powr_W",
        "found \"source.powr_W\", expected a key with its table, perhaps "
        "source.power_W"},
-      {"budget " + attitude + " --set 'disturbance={kind=\"bearing_drag\"}'",
+      {"budget " + attitude_file + " --set 'disturbance={kind=\"bearing_drag\"}'",
        "disturbance.kind: found \"bearing_drag\" without its keys, expected also "
        "coefficient_N_m_s"},
-      {"budget " + attitude + " --set 'disturbance={kind=\"radiation_pressure\",table=\"no.csv\"}'",
+      {"budget " + attitude_file +
+           " --set 'disturbance={kind=\"radiation_pressure\",table=\"no.csv\"}'",
        "disturbance.table: found \"no.csv\", expected an existing file"},
       {"power " + nominal_file + few_rays + " --set array.strings=7", "strings"},
       {"power " + nominal_file + few_rays + " --set array.cell=banana", "banana"},

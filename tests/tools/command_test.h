@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +23,8 @@ namespace photorque {
 
 inline const std::string program_file = std::string(PHOTORQUE_BINARY_DIR) + "/photorque",
                          source_folder = PHOTORQUE_SOURCE_DIR,
-                         nominal_file = source_folder + "/scenes/stasis/nominal.toml";
+                         nominal_file = source_folder + "/scenes/stasis/nominal.toml",
+                         attitude_file = source_folder + "/scenes/stasis/attitude.toml";
 inline const fs::path shipped_scenes = source_folder + "/scenes";
 
 // The exit status and all that the program printed.
@@ -73,6 +76,32 @@ class CommandTest : public ::testing::Test {
     EXPECT_EQ(got.status, 2) << got.err;
     EXPECT_EQ(std::ranges::count(got.err, '\n'), lines) << got.err;
     return got.err;
+  }
+  // `photorque ARGUMENTS` as another process, whose text is added to a file.
+  static pid_t start(const std::string& arguments, const std::string& into = "/dev/null") {
+    const std::string command = "exec " + program_file + " " + arguments + " >>" + into + " 2>&1";
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::signal(SIGINT, SIG_DFL);  // background processes of a shell ignore it
+      ::signal(SIGHUP, SIG_DFL);
+      ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+      ::_exit(127);
+    }
+    return child;
+  }
+  // Its exit status; -1 where a signal ended it.
+  static int end_of(pid_t child) {
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  static void kill_process(pid_t child) {
+    ::kill(child, SIGKILL);
+    end_of(child);
+  }
+  // Its refusal contains these words.
+  void expect_refusal(const std::string& arguments, const std::string& words) const {
+    EXPECT_THAT(refused(arguments), ::testing::HasSubstr(words)) << arguments;
   }
   // The path of a file in the test's folder.
   std::string at(const std::string& name) const { return (folder_ / name).string(); }

@@ -26,26 +26,6 @@ molar_mass_g_mol = 16
 wall_temperature_K = 1e-6
 )");
   }
-  // The numbers of a column.
-  std::vector<double> column(const std::string& file, const std::string& name) const {
-    std::istringstream text(file_text(at(file)));
-    std::string line, cell;
-    std::vector<double> values;
-    size_t wanted = 0;
-    while (std::getline(text, line)) {
-      if (line.empty() || line[0] == '#') continue;
-      std::istringstream cells(line);
-      std::vector<std::string> row;
-      while (std::getline(cells, cell, ',')) row.push_back(cell);
-      const auto found = std::ranges::find(row, name);
-      if (found != row.end()) {
-        wanted = static_cast<size_t>(found - row.begin());
-      } else {
-        values.push_back(std::stod(row.at(wanted)));
-      }
-    }
-    return values;
-  }
 };
 
 // T = ½ρv² C_D A L with C_D = 2, the plate's area across the wind and the arm of its middle. The
@@ -76,7 +56,8 @@ initial_attitude = [0.92387953251, -0.38268343237, 0, 0]
   const double wind_m_s = std::sqrt(3.986004418e14 / radius_m) - 7.292115e-5 * radius_m;
   const double force_N = 0.5 * 1e-11 * wind_m_s * wind_m_s * 2.0 * 0.16 * std::sqrt(0.5);
   const double torque_N_m = force_N * 0.1 * std::sqrt(0.5);
-  const double found = column("o/time_history.csv", "torque_aerodynamic_drag_x_N_m").at(0);
+  const double found =
+      csv_table(at("o/time_history.csv")).at("torque_aerodynamic_drag_x_N_m").at(0);
   EXPECT_NEAR(found, torque_N_m, 1e-4 * torque_N_m);
   EXPECT_NEAR(torque_N_m, 4.12e-6, 0.01e-6);
   // The orbit is needed.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/command_test.h"
+#include "tools/runs/memory.h"
 
 namespace photorque {
 namespace {
@@ -14,7 +15,7 @@ const std::string quick_run = " --set trace.rays=16384", endless_run = " --set t
 class Limits : public CommandTest {
  protected:
   void expect_refused(const std::string& arguments, const std::string& words) const {
-    EXPECT_THAT(refused(arguments + " --out " + at("o")), HasSubstr(words));
+    expect_refusal(arguments + " --out " + at("o"), words);
     EXPECT_FALSE(fs::exists(at("o")));
   }
 };
@@ -23,6 +24,23 @@ TEST_F(Limits, MapsThatDoNotFitIntoMemoryAreRefusedBeforeTheWork) {
   expect_refused(
       "trace " + nominal_file + endless_run + " --set receiver[0].bins=[4096,4096] --max-memory 2",
       "expected at most 2 GB (--max-memory)");
+}
+
+TEST_F(Limits, MemoryLeftIsThatOfTheControlGroupAndOfThoseAboveIt) {
+  const auto state_group = [&](const std::string& folder, const std::string& most) {
+    fs::create_directories(at(folder));
+    std::ofstream(at(folder) + "/memory.max") << most << "\n";
+    std::ofstream(at(folder) + "/memory.current") << "1000\n";
+  };
+  state_group("groups", "max");
+  EXPECT_FALSE(left_of_group_bytes(at("groups"), ""));
+  state_group("groups/job/step", "9000");
+  EXPECT_EQ(left_of_group_bytes(at("groups"), "job/step"), 8000u);
+  EXPECT_FALSE(left_of_group_bytes(at("groups"), "job"));
+  state_group("groups/job", "5000");
+  EXPECT_EQ(left_of_group_bytes(at("groups"), "job/step"), 4000u);
+  state_group("groups/job", "500");
+  EXPECT_EQ(left_of_group_bytes(at("groups"), "job/step"), 0u);
 }
 
 TEST_F(Limits, MemoryIsHeldWhereItIsAllowed) {
@@ -38,40 +56,18 @@ TEST_F(Limits, MemoryThatHoldsNoRunOrIsNoNumberIsRefused) {
   }
 }
 
-TEST_F(Limits, NamesThatNoFileCanHaveAreRefusedBeforeTheTrace) {
-  expect_refused(
-      "trace " + nominal_file + endless_run + " --set receiver[0].name=" + std::string(400, 'x'),
-      "400 letters");
-}
-
-TEST_F(Limits, EpochsWithinALeapSecondAreRefused) {
-  expect_refused("propagate " + (shipped_scenes / "stasis" / "attitude.toml").string() +
-                     " --set propagate.epoch=2016-12-31T23:59:60",
-                 "expected no leap second");
-}
-
-TEST_F(Limits, TimesOfZeroAreRefused) {
-  expect_refused("trace " + nominal_file + " --max-time 0",
-                 "--max-time: found 0, expected a number of seconds > 0");
-}
-
-TEST_F(Limits, LampsAndOpeningsFartherThanAnythingBuiltAreRefused) {
-  expect_refused("trace " + nominal_file + " --set source[0].aperture_diameter_m=1e11",
-                 "expected an opening of at most 1e9 m");
-}
-
-TEST_F(Limits, WrenchesOfAPartCalledBodyAreRefusedBeforeTheTrace) {
-  expect_refused("trace " + nominal_file + endless_run +
-                     " --set receiver[1].node=solar_array --set receiver[1].name=body",
+TEST_F(Limits, ValuesBeyondThoseOfAnyRunAreRefusedBeforeTheWork) {
+  const std::string trace = "trace " + nominal_file, endless_trace = trace + endless_run;
+  expect_refused(endless_trace + " --set receiver[0].name=" + std::string(400, 'x'), "400 letters");
+  expect_refused(endless_trace + " --set receiver[1].node=solar_array --set receiver[1].name=body",
                  "expected another name");
-}
-
-TEST_F(Limits, DevicesAreNoExperiments) {
+  expect_refused(trace + " --max-time 0", "--max-time: found 0, expected a number of seconds > 0");
+  expect_refused(trace + " --set source[0].aperture_diameter_m=1e11",
+                 "expected an opening of at most 1e9 m");
   expect_refused("trace /dev/zero", "/dev/zero: found a device, expected a file");
-}
-
-TEST_F(Limits, ChargesBeyondTheBatteryAreRefused) {
-  expect_refused("propagate " + (shipped_scenes / "stasis" / "attitude.toml").string() +
+  expect_refused("propagate " + attitude_file + " --set propagate.epoch=2016-12-31T23:59:60",
+                 "expected no leap second");
+  expect_refused("propagate " + attitude_file +
                      " --set platform.battery_capacity_Ah=1 --set propagate.initial_charge_Ah=2",
                  "expected at most the 1.000000 of platform.battery_capacity_Ah");
 }

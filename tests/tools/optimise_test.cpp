@@ -114,19 +114,13 @@ at_least = 1e6
 TEST_F(Optimise, GoesOnWhereItWasKilledToTheSameEnd) {
   experiment(aim_at_the_sun);
   ASSERT_EQ(optimise("reference", sun_from(25, 40)).status, 0);
-  const std::string command = "exec " + program_file + " optimise " + at("e.toml") + " --out " +
-                              at("out") + sun_from(25, 40) + " >/dev/null 2>&1";
-  const char* const words[] = {"sh", "-c", command.c_str(), nullptr};
-  pid_t child = -1;
-  ASSERT_EQ(
-      ::posix_spawn(&child, "/bin/sh", nullptr, nullptr, const_cast<char* const*>(words), environ),
-      0);
+  const pid_t child =
+      CommandTest::start("optimise " + at("e.toml") + " --out " + at("out") + sun_from(25, 40));
   const auto runs = [this] {
     return std::atoi(query(at("out/designs.sqlite"), "SELECT count(*) FROM run")[0][0].c_str());
   };
   while (runs() < 10) ::usleep(2000);
-  ::kill(child, SIGKILL);
-  end_of(child);
+  kill_process(child);
   const int before = runs();
   const Outcome got = optimise("out", sun_from(25, 40));
   ASSERT_EQ(got.status, 0) << got.err;

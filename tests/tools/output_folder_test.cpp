@@ -1,7 +1,5 @@
 // Where a run writes: found wanting before the work, kept by one run at a time, left clean.
 #include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -24,18 +22,8 @@ double seconds_since(Clock::time_point start) {
 
 class OutputFolders : public CommandTest {
  protected:
-  // `photorque trace` on its own, as another process.
-  pid_t start(const std::string& arguments) const {
-    const std::string command =
-        "exec " + program_file + " trace " + nominal_file + arguments + " >/dev/null 2>&1";
-    const pid_t child = ::fork();
-    if (child == 0) {
-      ::signal(SIGINT, SIG_DFL);  // background processes of a shell ignore it
-      ::signal(SIGHUP, SIG_DFL);
-      ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-      ::_exit(127);
-    }
-    return child;
+  static pid_t start_trace(const std::string& arguments) {
+    return start("trace " + nominal_file + arguments);
   }
   static void wait_until(const std::function<bool()>& there) {
     for (const auto begin = Clock::now(); !there() && seconds_since(begin) < 20.0;) {
@@ -142,12 +130,11 @@ TEST_F(OutputFolders, OfOtherUsersAreRefused) {
 }
 
 TEST_F(OutputFolders, BelongToOneRunAtATime) {
-  const pid_t first = start(endless + " --out " + at("o"));
+  const pid_t first = start_trace(endless + " --out " + at("o"));
   wait_until([&] { return fs::exists(at("o")); });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   const Outcome second = run("trace " + nominal_file + quick + " --out " + at("o"));
-  ::kill(first, SIGKILL);
-  ::waitpid(first, nullptr, 0);
+  kill_process(first);
   EXPECT_THAT(refusal_in(second), HasSubstr("a folder that another run is writing into"));
   // A killed run holds no lock.
   succeed("trace " + nominal_file + quick + " --out " + at("o"));
@@ -156,7 +143,7 @@ TEST_F(OutputFolders, BelongToOneRunAtATime) {
 TEST_F(OutputFolders, AreLeftCleanBySignalsWithinASecond) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2, SIGXCPU}) {
     for (const int after_ms : {30, 200, 450}) {
-      const pid_t child = start(quick + " --out " + at("o/p"));
+      const pid_t child = start_trace(quick + " --out " + at("o/p"));
       std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
       const auto begin = Clock::now();
       ::kill(child, signal);
@@ -189,19 +176,18 @@ TEST_F(OutputFolders, HoldAllResultsWhenTheReaderOfTheTextLeaves) {
 // (found by tools/faults on fit-cell).
 TEST_F(OutputFolders, AreFreeAsSoonAsARunWasStopped) {
   for (int i = 0; i < 8; ++i) {
-    const pid_t child = start(endless + " --out " + at("o"));
+    const pid_t child = start_trace(endless + " --out " + at("o"));
     wait_until([&] { return fs::exists(at("o")); });
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     ::kill(child, SIGINT);
-    ::waitpid(child, nullptr, 0);
+    end_of(child);
     succeed("trace " + nominal_file + " --set trace.rays=4096 --out " + at("o"));
   }
 }
 
 TEST_F(OutputFolders, AreClearedOfFilesOfKilledRuns) {
-  const pid_t child = start(endless + " --out " + at("o"));
-  ::kill(child, SIGKILL);
-  ::waitpid(child, nullptr, 0);
+  const pid_t child = start_trace(endless + " --out " + at("o"));
+  kill_process(child);
   std::string name = temporary_beside(fs::path(at("o")) / "results").filename().string();
   const std::string own = std::to_string(::getpid());
   name.replace(name.find(own), own.size(), std::to_string(child));

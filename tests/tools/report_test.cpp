@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/diagnosis/sample_diagnosis.h"
+#include "tests/files.h"
 #include "tools/pages/charts.h"
 #include "tools/pages/pages.h"
 #include "tools/sweeps/labels.h"
@@ -20,12 +21,6 @@ using testing::Pointwise;
 
 std::string report(const Diagnosis& d) {
   return report_html(d, build_provenance(), "experiment");
-}
-
-size_t occurrences(const std::string& text, const std::string& of) {
-  size_t count = 0;
-  for (size_t at = text.find(of); at != std::string::npos; at = text.find(of, at + 1)) ++count;
-  return count;
 }
 
 // A scan of 3 × 2 places, read in a serpentine, and an array of two cells.
@@ -76,7 +71,6 @@ std::string unbalanced(const std::string& whole_page) {
   return open.empty() ? "" : "<" + open.back() + ">";
 }
 
-// In the order of the places, v upwards.
 // The part that was held out belongs to its recording, which is called by the name of its file.
 TEST(Report, NamesEveryRecordingOnceByItsFile) {
   Diagnosis d = sample_diagnosis();
@@ -100,6 +94,7 @@ TEST(Report, ShowsScansBesideTheirModels) {
   EXPECT_THAT(page, HasSubstr("At tilt 0."));
   const std::vector<ScanGroup> groups = scan_groups(d.series);
   ASSERT_EQ(groups.size(), 1u);
+  // In the order of the places, v upwards.
   const std::vector<std::vector<double>> expected = {
       {10, 20, 30, 60, 50, 40}, {9, 18, 27, 54, 45, 36}, {1, 2, 3, 6, 5, 4}, {0, 0, 0, 0, 1, 0}};
   const std::vector<ScanView> views = views_of_scans(true);

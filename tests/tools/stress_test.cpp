@@ -88,8 +88,8 @@ TEST_F(Stress, RatesFromANanoradianToAThousandRadiansASecond) {
 }
 
 TEST_F(Stress, CellsTooColdForADiodeAreReported) {
-  EXPECT_THAT(refused("power " + source_folder +
-                      "/scenes/stasis/nominal.toml --set array.temperature_K=1 "
+  EXPECT_THAT(refused("power " + nominal_file +
+                      " --set array.temperature_K=1 "
                       "--set trace.rays=4096 --out " +
                       at("o")),
               HasSubstr("found zero saturation currents at 1"));
@@ -111,7 +111,7 @@ class Attack : public CommandTest {
     return write("bench.toml", text + more) + " --allow-outside";
   }
   void expect_refused(const std::string& arguments, const std::string& part) const {
-    EXPECT_THAT(refused(arguments + " --quiet --out " + at("o")), HasSubstr(part));
+    expect_refusal(arguments + " --quiet --out " + at("o"), part);
   }
 };
 
@@ -160,8 +160,7 @@ TEST_F(Attack, ATorqueMapReportsThatItOmitsTheAttitudeBias) {
 TEST_F(Attack, RatesThatNoPlatformHasAreNoFailureOfTheComputation) {
   std::string rows = "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
   for (int i = 0; i < 60; ++i) rows += std::to_string(0.1 * i) + ",1,0,0,0,1e300,0,0\n";
-  expect_refused("balance " + source_folder + "/scenes/stasis/attitude.toml --recording " +
-                     write("fast.csv", rows),
+  expect_refused("balance " + attitude_file + " --recording " + write("fast.csv", rows),
                  "rates below 1e6 rad/s");
 }
 

@@ -75,8 +75,7 @@ TEST_F(SweepDatabase, LosesNothingByTwentyKills) {
     }
     std::this_thread::sleep_for(
         std::chrono::microseconds(moments() % (k % 4 == 0 ? 150000 : 20000)));
-    ::kill(child, SIGKILL);
-    end_of(child);
+    kill_process(child);
     if (!fs::exists(database())) continue;
     ASSERT_EQ(query(database(), "PRAGMA integrity_check")[0][0], "ok");
     if (count("SELECT count(*) FROM sqlite_master") == 0) continue;  // killed while it was made
@@ -163,8 +162,7 @@ TEST_F(SweepDatabase, OfShardsGivesTheSameTableWhenOneWasKilled) {
   while (std::atoi(query(own, "SELECT count(*) FROM run")[0][0].c_str()) < 3) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  ::kill(second, SIGKILL);
-  end_of(second);
+  kill_process(second);
   EXPECT_THAT(sweep("--shard 1/3").out, HasSubstr("not all shards are done"));
   EXPECT_THAT(sweep("--shard 3/3").out, HasSubstr("not all shards are done"));
   EXPECT_FALSE(fs::exists(at("out/sweep.csv")));

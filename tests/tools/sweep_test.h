@@ -1,14 +1,9 @@
 // Shared by the tests of sweeps: a black plate in sunlight, whose figures have closed forms.
 #pragma once
 
-#include <signal.h>
-#include <spawn.h>
 #include <sqlite3.h>
-#include <unistd.h>
 
 #include "tests/tools/command_test.h"
-
-extern char** environ;
 
 namespace photorque {
 
@@ -57,17 +52,8 @@ class SweepTest : public CommandTest {
   // `photorque sweep` on its own, as another process.
   pid_t start(const std::string& options, const std::string& out = "out",
               const std::string& output_file = "/dev/null") const {
-    const std::string command = "exec " + program_file + " sweep " + at("e.toml") + " --out " +
-                                at(out) + " " + options + " >" + output_file + " 2>&1";
-    const char* const words[] = {"sh", "-c", command.c_str(), nullptr};
-    pid_t child = -1;
-    ::posix_spawn(&child, "/bin/sh", nullptr, nullptr, const_cast<char* const*>(words), environ);
-    return child;
-  }
-  static int end_of(pid_t child) {
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return CommandTest::start("sweep " + at("e.toml") + " --out " + at(out) + " " + options,
+                              output_file);
   }
 };
 

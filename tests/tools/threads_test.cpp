@@ -84,9 +84,8 @@ class Threads : public CommandTest, public ::testing::WithParamInterface<Command
     write("sunlit.toml", sunlit);
     write("datasheet.toml", datasheet);
     if (GetParam().name != "balance") return;
-    const std::string flight = "propagate " +
-                               (shipped_scenes / "stasis" / "attitude.toml").string() +
-                               " --set propagate.duration_s=60 --out " + at("flight");
+    const std::string flight =
+        "propagate " + attitude_file + " --set propagate.duration_s=60 --out " + at("flight");
     succeed(flight);
     fs::copy(at("flight/recording.csv"), at("recording.csv"));
   }

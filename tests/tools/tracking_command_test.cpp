@@ -30,9 +30,8 @@ TEST_F(TrackingCommands, TheStatedBoardAndLensGiveThePapersErrors) {
 }
 
 TEST_F(TrackingCommands, ACameraWithoutMarkersIsNoneToStudy) {
-  EXPECT_THAT(
-      refused("camera " + (source / "scenes/stasis/attitude.toml").string() + " --out " + at("o")),
-      HasSubstr("sensors.camera.markers_m"));
+  EXPECT_THAT(refused("camera " + attitude_file + " --out " + at("o")),
+              HasSubstr("sensors.camera.markers_m"));
 }
 
 // The platform's own plate stands between a camera below it and the markers above.

@@ -290,58 +290,55 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
             "Curve " + (is_only ? "" : std::to_string(sweep) + " ") + "of " + recording.recording +
                 (recording.is_held_out ? ", never fitted" : ""),
             "voltage [V]", "current [A]"};
-  Plot::Curve measured, before, after, off_before, off_after;
-  measured.dots = true;
-  measured.colour = Plot::Colour::grey;
-  before.dashed = true;
-  before.colour = off_before.colour = Plot::Colour::vermilion;
-  after.colour = off_after.colour = Plot::Colour::blue;
-  measured.label = "measured";
-  before.label = "nominal model";
-  after.label = "improved model";
-  off_before.label = "measured − nominal";
-  off_after.label = "measured − improved";
   std::vector<size_t> rows;
   for (size_t i = 0; i < light.measured.size(); ++i) {
     if (light.sweep.empty() || light.sweep[i] == sweep) rows.push_back(i);
   }
   std::ranges::stable_sort(rows, {}, [&](size_t i) { return light.voltage_V[i]; });
-  for (const size_t i : rows) {
-    for (Plot::Curve* curve : {&measured, &before, &after, &off_before, &off_after}) {
-      curve->x.push_back(light.voltage_V[i]);
+  const auto curve = [&](const char* label, Plot::Colour colour, const auto& value) {
+    Plot::Curve one;
+    one.label = label;
+    one.colour = colour;
+    for (const size_t i : rows) {
+      one.x.push_back(light.voltage_V[i]);
+      one.y.push_back(value(i));
     }
-    measured.y.push_back(light.measured[i]);
-    before.y.push_back(light.before[i]);
-    after.y.push_back(light.after[i]);
-    off_before.y.push_back(light.measured[i] - light.before[i]);
-    off_after.y.push_back(light.measured[i] - light.after[i]);
-  }
-  plot.curves = {std::move(measured), std::move(before)};
-  Plot::Panel residual{"difference [A]", {std::move(off_before)}};
+    return one;
+  };
+  const auto of = [](const std::vector<double>& series) {
+    return [&series](size_t i) { return series[i]; };
+  };
+  const auto off = [&](const std::vector<double>& model) {
+    return [&light, &model](size_t i) { return light.measured[i] - model[i]; };
+  };
+  plot.curves = {curve("measured", Plot::Colour::grey, of(light.measured)),
+                 curve("nominal model", Plot::Colour::vermilion, of(light.before))};
+  plot.curves[0].dots = true;
+  plot.curves[1].dashed = true;
+  Plot::Panel residual{"difference [A]",
+                       {curve("measured − nominal", Plot::Colour::vermilion, off(light.before))}};
   if (something_was_found) {
-    plot.curves.push_back(std::move(after));
-    residual.curves.push_back(std::move(off_after));
+    plot.curves.push_back(curve("improved model", Plot::Colour::blue, of(light.after)));
+    residual.curves.push_back(curve("measured − improved", Plot::Colour::blue, off(light.after)));
   }
   plot.below = {std::move(residual)};
   return plot;
 }
 
 std::string array_html(const DrawnArray& array) {
-  double u_low = 1e300, u_high = -1e300, v_low = 1e300, v_high = -1e300;
+  Extent u, v;
   for (const DrawnArray::Cell& c : array.cells) {
-    u_low = std::min(u_low, c.u_low);
-    u_high = std::max(u_high, c.u_high);
-    v_low = std::min(v_low, c.v_low);
-    v_high = std::max(v_high, c.v_high);
+    for (const double edge : {c.u_low, c.u_high}) u.include(edge);
+    for (const double edge : {c.v_low, c.v_high}) v.include(edge);
   }
   constexpr double width = 560.0, margin = 8.0, most_numbers = 400.0;
   constexpr Rgb plain = rgb_from_hex(0xE6EDF5), suspect = rgb_from_hex(0xE2864A);
-  const double scale = (width - 2.0 * margin) / (u_high - u_low);
+  const double scale = (width - 2.0 * margin) / (u.high - u.low);
   const auto box_of_cell = [&](const DrawnArray::Cell& c) {
-    return PageBox{margin + scale * (c.u_low - u_low), margin + scale * (v_high - c.v_high),
+    return PageBox{margin + scale * (c.u_low - u.low), margin + scale * (v.high - c.v_high),
                    scale * (c.u_high - c.u_low), scale * (c.v_high - c.v_low)};
   };
-  Canvas canvas = Canvas::of_svg(width, scale * (v_high - v_low) + 2.0 * margin);
+  Canvas canvas = Canvas::of_svg(width, scale * (v.high - v.low) + 2.0 * margin);
   for (size_t k = 0; k < array.cells.size(); ++k) {
     const PageBox box = box_of_cell(array.cells[k]);
     const bool is_suspect = std::ranges::find(array.suspects, k) != array.suspects.end();

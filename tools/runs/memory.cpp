@@ -9,11 +9,14 @@
 #include "core/text/format.h"
 
 namespace photorque {
+
+namespace fs = std::filesystem;
+
 namespace {
 
 constexpr double bytes_per_GB = 1e9;
 
-std::optional<uint64_t> number_of_file(const char* path) {
+std::optional<uint64_t> number_of_file(const fs::path& path) {
   std::ifstream in(path);
   uint64_t value = 0;
   if (in >> value) return value;
@@ -31,12 +34,13 @@ std::optional<uint64_t> available_bytes() {
   return std::nullopt;
 }
 
-// Memory that a container or cluster job may still use.
-std::optional<uint64_t> left_of_group_bytes() {
-  const auto most = number_of_file("/sys/fs/cgroup/memory.max");
-  const auto taken = number_of_file("/sys/fs/cgroup/memory.current");
-  if (!most || !taken) return std::nullopt;
-  return *most > *taken ? *most - *taken : 0;
+// This process's control group, which Linux states as a path after "0::".
+std::string own_group() {
+  std::ifstream in("/proc/self/cgroup");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("0::/")) return line.substr(4);
+  }
+  return "";
 }
 
 std::string in_GB(uint64_t bytes) {
@@ -45,11 +49,25 @@ std::string in_GB(uint64_t bytes) {
 
 }  // namespace
 
+std::optional<uint64_t> left_of_group_bytes(const fs::path& mount, const fs::path& group) {
+  std::optional<uint64_t> left;
+  for (fs::path inner = group;; inner = inner.parent_path()) {
+    const auto most = number_of_file(mount / inner / "memory.max");
+    const auto taken = number_of_file(mount / inner / "memory.current");
+    if (most && taken) {
+      const uint64_t rest = *most > *taken ? *most - *taken : 0;
+      left = left ? std::min(*left, rest) : rest;
+    }
+    if (inner.empty()) return left;
+  }
+}
+
 uint64_t memory_limit_bytes(std::optional<double> allowed_GB) {
   if (allowed_GB) return static_cast<uint64_t>(*allowed_GB * bytes_per_GB);
   constexpr uint64_t no_limit = std::numeric_limits<uint64_t>::max();
   const uint64_t free_bytes =
-      std::min(available_bytes().value_or(no_limit), left_of_group_bytes().value_or(no_limit));
+      std::min(available_bytes().value_or(no_limit),
+               left_of_group_bytes("/sys/fs/cgroup", own_group()).value_or(no_limit));
   return free_bytes == no_limit ? no_limit : free_bytes / 10 * 9;
 }
 

@@ -2,11 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 
 #include "core/errors.h"
 
 namespace photorque {
+
+// Memory that a process of the control group `group` may still use [bytes]: the least of what is
+// left to the group and to those above it, whose folders lie in `mount`; none without a limit.
+std::optional<uint64_t> left_of_group_bytes(const std::filesystem::path& mount,
+                                            const std::filesystem::path& group);
 
 // Memory that a run may use [bytes]: the user's limit (--max-memory), otherwise nine tenths of the
 // free memory of the machine or of the process's control group; unlimited if neither is known.

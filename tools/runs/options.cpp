@@ -2,12 +2,19 @@
 
 #include "core/files.h"
 #include "core/text/format.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 
 std::string RunOptions::experiment_text() const {
   constexpr uint64_t largest_bytes = 1ull << 26;
   return text ? *text : read_file(experiment, largest_bytes);
+}
+
+SettingsNode RunOptions::settings(const std::vector<std::string>& changes) const {
+  SettingsNode root = parse_toml(experiment_text(), experiment.string());
+  for (const std::string& assignment : changes) apply_override(root, assignment);
+  return root;
 }
 
 std::vector<std::string> RunOptions::all_overrides() const {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/settings/settings.h"
 #include "raytrace/emitter.h"
 
 namespace photorque {
@@ -33,6 +34,8 @@ struct RunOptions {
 
   // `text`, or the text of the file.
   std::string experiment_text() const;
+  // The text as settings with these changes. Throws InputError for invalid TOML or changes.
+  SettingsNode settings(const std::vector<std::string>& changes) const;
   // The overrides, including those from seed, target error and time.
   std::vector<std::string> all_overrides() const;
 };

@@ -113,21 +113,6 @@ Plot curves_over_last(const SweepPlan& plan, const SweepResult& result, const st
   return plot;
 }
 
-// Adds a curve of points; omits it if it is empty.
-void add_points(Plot& plot, const std::string& label, std::vector<double> x, std::vector<double> y,
-                Plot::Colour colour, bool dots) {
-  if (x.empty()) return;
-  Plot::Curve curve;
-  curve.label = label;
-  curve.x = std::move(x);
-  curve.y = std::move(y);
-  curve.dots = dots;
-  curve.markers = !dots;
-  curve.colour = colour;
-  if (dots) curve.width = 2.2;
-  plot.curves.push_back(std::move(curve));
-}
-
 struct Cloud {
   std::vector<double> x, y;
   void add(double at_x, double at_y) {
@@ -137,22 +122,40 @@ struct Cloud {
   }
 };
 
-// Adds the values of all designs, separated by whether the constraints are satisfied, and the best.
+// Adds a curve of points; omits it if it is empty.
+void add_points(Plot& plot, const std::string& label, const Cloud& cloud, Plot::Colour colour,
+                bool dots) {
+  if (cloud.x.empty()) return;
+  Plot::Curve curve{label, cloud.x, cloud.y};
+  curve.dots = dots;
+  curve.markers = !dots;
+  curve.colour = colour;
+  if (dots) curve.width = 2.2;
+  plot.curves.push_back(std::move(curve));
+}
+
+// Points of designs, separated by whether the constraints are satisfied.
+struct DesignClouds {
+  Cloud inside, outside;
+  void add(const Design& design, double x, double y) {
+    (design.feasible ? inside : outside).add(x, y);
+  }
+  void draw(Plot& plot, const std::string& label_inside) const {
+    add_points(plot, "outside the constraints", outside, Plot::Colour::grey, true);
+    add_points(plot, label_inside, inside, Plot::Colour::blue, true);
+  }
+};
+
+// Adds the values of all designs and the best.
 void add_designs(Plot& plot, const SweepPlan& plan, const SweepResult& result,
                  const std::vector<double>& x, const std::vector<double>& y) {
-  Cloud inside, outside, best;
-  for (size_t d = 0; d < result.designs.size(); ++d) {
-    (result.designs[d].feasible ? inside : outside).add(x[d], y[d]);
-  }
+  DesignClouds all;
+  Cloud best;
+  for (size_t d = 0; d < result.designs.size(); ++d) all.add(result.designs[d], x[d], y[d]);
   if (result.best) best.add(x[*result.best], y[*result.best]);
-  add_points(plot, "outside the constraints", outside.x, outside.y, Plot::Colour::grey, true);
-  const bool named = !outside.x.empty() || !best.x.empty();
-  add_points(plot,
-             !named                     ? ""
-             : plan.constraints.empty() ? "designs"
-                                        : "within the constraints",
-             inside.x, inside.y, Plot::Colour::blue, true);
-  add_points(plot, "best", best.x, best.y, Plot::Colour::vermilion, false);
+  const bool named = !all.outside.x.empty() || !best.x.empty();
+  all.draw(plot, !named ? "" : plan.constraints.empty() ? "designs" : "within the constraints");
+  add_points(plot, "best", best, Plot::Colour::vermilion, false);
 }
 
 Plot scatter(const SweepPlan& plan, const SweepResult& result, const std::string& column,
@@ -172,26 +175,18 @@ Plot pareto_plot(const SweepPlan& plan, const SweepResult& result, size_t second
   const AxisLabel x = label_of_figure(first_column), y = label_of_figure(second_column);
   Plot plot{"pareto_" + second_column, title_of_figure(plan, second_column) + " against " + x.name,
             x.text(), y.text()};
-  Cloud inside, outside, front, nominal;
-  for (const Design& d : result.designs) {
-    (d.feasible ? inside : outside)
-        .add(value_or_nothing(d, first_column), value_or_nothing(d, second_column));
-  }
+  const auto first_of = [&](const Design& d) { return value_or_nothing(d, first_column); };
+  const auto second_of = [&](const Design& d) { return value_or_nothing(d, second_column); };
+  DesignClouds all;
+  Cloud front, nominal;
+  for (const Design& d : result.designs) all.add(d, first_of(d), second_of(d));
   std::vector<size_t> best = pareto_designs(plan, result.designs);
-  std::ranges::sort(best, {},
-                    [&](size_t d) { return value_or_nothing(result.designs[d], first_column); });
-  for (const size_t d : best) {
-    front.add(value_or_nothing(result.designs[d], first_column),
-              value_or_nothing(result.designs[d], second_column));
-  }
-  if (result.nominal) {
-    nominal.add(value_or_nothing(*result.nominal, first_column),
-                value_or_nothing(*result.nominal, second_column));
-  }
-  add_points(plot, "outside the constraints", outside.x, outside.y, Plot::Colour::grey, true);
-  add_points(plot, "designs", inside.x, inside.y, Plot::Colour::blue, true);
-  add_points(plot, "Pareto front", front.x, front.y, Plot::Colour::vermilion, false);
-  add_points(plot, "the nominal experiment", nominal.x, nominal.y, Plot::Colour::green, false);
+  std::ranges::sort(best, {}, [&](size_t d) { return first_of(result.designs[d]); });
+  for (const size_t d : best) front.add(first_of(result.designs[d]), second_of(result.designs[d]));
+  if (result.nominal) nominal.add(first_of(*result.nominal), second_of(*result.nominal));
+  all.draw(plot, "designs");
+  add_points(plot, "Pareto front", front, Plot::Colour::vermilion, false);
+  add_points(plot, "the nominal experiment", nominal, Plot::Colour::green, false);
   return plot;
 }
 
@@ -269,25 +264,22 @@ Plot search_plot(const SweepPlan& plan, const SweepResult& result) {
   const std::string column = plan.judged_column(objective);
   const AxisLabel y = label_of_figure(column);
   Plot plot{"search", title_of_figure(plan, column) + ": the search", "evaluation", y.text()};
-  Cloud inside, outside, so_far;
+  DesignClouds all;
+  Cloud so_far;
   double best = std::nan("");
   for (size_t d = 0; d < result.designs.size(); ++d) {
     const double value = value_or_nothing(result.designs[d], column);
     const double at = static_cast<double>(d + 1);
     const bool feasible = result.designs[d].feasible;
-    (feasible ? inside : outside).add(at, value);
+    all.add(result.designs[d], at, value);
     if (feasible && (std::isnan(best) || (objective.maximise ? value > best : value < best))) {
       best = value;
     }
     so_far.add(at, best);
   }
-  add_points(plot, "outside the constraints", outside.x, outside.y, Plot::Colour::grey, true);
-  add_points(plot, "evaluations", inside.x, inside.y, Plot::Colour::blue, true);
+  all.draw(plot, "evaluations");
   if (!so_far.x.empty()) {
-    Plot::Curve line;
-    line.label = "best so far";
-    line.x = so_far.x;
-    line.y = so_far.y;
+    Plot::Curve line{"best so far", so_far.x, so_far.y};
     line.colour = Plot::Colour::vermilion;
     plot.curves.push_back(std::move(line));
   }

@@ -7,7 +7,6 @@
 #include "tools/sweeps/values.h"
 
 namespace photorque {
-namespace {}  // namespace
 
 Tolerances::Tolerances(const BuiltCopies& plan, const RunIdentity& identity) : identity_(identity) {
   size_t dimension = 0;

@@ -17,7 +17,6 @@
 #include "core/text/format.h"
 #include "diagnosis/light/model/lab.h"
 #include "diagnosis/light/module/design.h"
-#include "scenes/experiment/toml.h"
 #include "tools/coupling/couple.h"
 #include "tools/keys/registry.h"
 #include "tools/realtime/session.h"
@@ -56,7 +55,7 @@ class Checker {
   CheckReport report() {
     if (by_declaration_) {
       attempt([&] {
-        report_.mistakes = misread_keys(written(), tables_);
+        report_.mistakes = misread_keys(options_.settings(options_.all_overrides()), tables_);
         // The numbers of an array share one line.
         const auto line = [](const InputError& mistake) { return std::string(mistake.what()); };
         const auto again = std::ranges::unique(report_.mistakes, {}, line);
@@ -74,13 +73,6 @@ class Checker {
   }
 
  private:
-  // The tree of the file with its overrides.
-  SettingsNode written() const {
-    SettingsNode root = parse_toml(options_.experiment_text(), options_.experiment.string());
-    for (const std::string& change : options_.all_overrides()) apply_override(root, change);
-    return root;
-  }
-
   void note_tables() {
     for (const Key& table : tables_) {
       if (file_->settings.has(table.name)) report_.tables.push_back(table.name);
@@ -94,7 +86,7 @@ class Checker {
     const bool is_module = file_->settings.has("module");
     if (file_->scene_file && !unlit) check_light();
     if (file_->settings.has("platform")) check_motion();
-    if (fits) check_fit();
+    if (fits) attempt([&] { add("fit-cell", describe_fit(options_)); });
     if (is_module) check_module();
     if (file_->settings.has("sweep") && of_ == Of::file) check_sweep();
     if (!file_->scene_file && !file_->settings.has("platform") && !fits && !is_module) {
@@ -253,10 +245,6 @@ class Checker {
     add("propagate", show(run.duration_s) + " s of " + show(run.model.platform.mass_kg) +
                          " kg under " + counted(run.model.disturbances.size(), "disturbance") +
                          light);
-  }
-
-  void check_fit() {
-    attempt([&] { add("fit-cell", describe_fit(options_)); });
   }
 
   void check_module() {

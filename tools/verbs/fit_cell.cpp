@@ -15,7 +15,6 @@
 #include "photovoltaics/fit/curve_text.h"
 #include "photovoltaics/fit/fit.h"
 #include "photovoltaics/fit/rated_keys.h"
-#include "scenes/experiment/toml.h"
 #include "tools/keys/fit.h"
 #include "tools/verbs/fitted_cell.h"
 #include "tools/verbs/verb.h"
@@ -273,6 +272,10 @@ ArrayPoint best_point(const CellCurve& cell, double light_A) {
   return {best.voltage_V, best.current_A};
 }
 
+void add_cell_plot(const FitTask& task, const CellCurve& cell, double light_A, Product& product) {
+  add_fit_plot(task, cell_points(cell, light_A), {best_point(cell, light_A)}, product);
+}
+
 void print_light_note(const Console& console, bool uses_light, bool is_one) {
   if (!uses_light) return;
   console.line(
@@ -315,7 +318,7 @@ Product fit_even_light(const FitTask& task, const Console& console) {
   rows.push_back({"rms_current_A", {fit.rms_A, 0.0}});
   rows.push_back({"maximum_power_W", {best.power_W(), 0.0}});
   Product product = parameter_product(rows);
-  add_fit_plot(task, cell_points(cell, fit.diode.photocurrent_A.value), {best}, product);
+  add_cell_plot(task, cell, fit.diode.photocurrent_A.value, product);
   return product;
 }
 
@@ -368,9 +371,7 @@ Product fit_several_conditions(const FitTask& given, const Console& console) {
                " times that of the stated noise");
   print_misfit(console, std::sqrt(fit.variance));
   Table table = Table::of("curves", "The curves");
-  FitTask at_first = task;
-  at_first.sweeps.clear();
-  std::vector<ArrayPoint> points, maxima;
+  Product product = parameter_product(rows);
   for (size_t k = 0; k < fit.curves.size(); ++k) {
     const CurveAt& at = task.conditions[fit.curves[k].index];
     const double light_A = fit.curves[k].photocurrent_A.value;
@@ -385,17 +386,15 @@ Product fit_several_conditions(const FitTask& given, const Console& console) {
         .set("rms_A", fit.curves[k].rms_A)
         .set("maximum_power_W", best.power_W());
     if (k == 0) {
-      points = cell_points(cell, light_A);
-      maxima = {best};
+      FitTask at_first = task;
       at_first.sweeps = {at.sweep};
+      add_cell_plot(at_first, cell, light_A, product);
     }
   }
   print_cell(console, fit.diode, task, fit.model.reference);
   if (has_gap) print_key(console, "gap_eV", fit.model.gap_eV);
   if (has_gap) print_key(console, "gap_slope_per_K", fit.model.gap_slope_1_K);
-  Product product = parameter_product(rows);
   product.tables.push_back(table);
-  add_fit_plot(at_first, points, maxima, product);
   return product;
 }
 
@@ -440,8 +439,7 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
   print_key(console, "photocurrent_slope_per_K", fit.model.photocurrent_slope_1_K);
   const CellCurve cell(fit.model.reference);
   Product product = parameter_product(rows);
-  add_fit_plot(task, cell_points(cell, fit.diode.photocurrent_A.value),
-               {best_point(cell, fit.diode.photocurrent_A.value)}, product);
+  add_cell_plot(task, cell, fit.diode.photocurrent_A.value, product);
   return product;
 }
 
@@ -512,22 +510,19 @@ Product list_module(const ListedModule& module, const Console& console) {
   rows.push_back({"photocurrent_A", {module.photocurrent_A}});
   rows.push_back({"maximum_power_W", {given_W}});
   Product product = parameter_product(rows);
-  const double at_cell_A = module.photocurrent_A;
-  const CellCurve cell(in_light(p, at_cell_A));
-  add_fit_plot({}, cell_points(cell, at_cell_A), {best_point(cell, at_cell_A)}, product);
+  add_cell_plot({}, CellCurve(in_light(p, module.photocurrent_A)), module.photocurrent_A, product);
   return product;
 }
 
-FitTask task_of(const RunOptions& options, const std::string& text) {
-  SettingsNode root = parse_toml(text, options.experiment.string());
-  for (const std::string& assignment : options.overrides) apply_override(root, assignment);
-  return read_fit_task(Settings(std::move(root)), options.experiment.parent_path());
+FitTask task_of(const RunOptions& options) {
+  return read_fit_task(Settings(options.settings(options.overrides)),
+                       options.experiment.parent_path());
 }
 
 }  // namespace
 
 std::string describe_fit(const RunOptions& options) {
-  const FitTask task = task_of(options, options.experiment_text());
+  const FitTask task = task_of(options);
   const std::string cells = std::to_string(task.cells_in_series) + " in series";
   if (task.module) return "a module of a library: " + task.module->name;
   if (!task.datasheet.empty()) {
@@ -539,7 +534,7 @@ std::string describe_fit(const RunOptions& options) {
 RunResult run_fit_cell(const RunOptions& options, const Console& console) {
   const WallTime wall;
   const std::string text = options.experiment_text();
-  const FitTask task = task_of(options, text);
+  const FitTask task = task_of(options);
   Provenance provenance = build_provenance();
   provenance.inputs.emplace_back(options.experiment.filename().string(), content_hash(text));
   for (const std::string& assignment : options.overrides)

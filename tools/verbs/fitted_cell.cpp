@@ -108,16 +108,12 @@ void print_cell(const Console& console, const SingleDiode& d, const FitTask& tas
   console.heading("One cell, for [array.cell_parameters]");
   print_key(console, "saturation_1_A", d.saturation_A.value);
   print_key(console, "ideality_1", d.scale_V.value / task.thermal_V());
-  if (d.series_below_ohm) {
-    print_key(console, "series_ohm", *d.series_below_ohm / cells, "an upper limit (95 %)");
-  } else {
-    print_key(console, "series_ohm", d.series_ohm.value / cells);
-  }
-  if (d.shunt_above_ohm) {
-    print_key(console, "shunt_ohm", *d.shunt_above_ohm / cells, "a lower limit (95 %)");
-  } else {
-    print_key(console, "shunt_ohm", d.shunt_ohm.value / cells);
-  }
+  const auto print_ohm = [&](const char* name, const std::optional<double>& limit, double value,
+                             const char* comment) {
+    print_key(console, name, limit.value_or(value) / cells, limit ? comment : "");
+  };
+  print_ohm("series_ohm", d.series_below_ohm, d.series_ohm.value, "an upper limit (95 %)");
+  print_ohm("shunt_ohm", d.shunt_above_ohm, d.shunt_ohm.value, "a lower limit (95 %)");
   if (reference.shunt_light_A > 0.0) {
     print_key(console, "shunt_photocurrent_A", reference.shunt_light_A);
     if (std::isfinite(reference.shunt_dark_ohm)) {

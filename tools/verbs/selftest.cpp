@@ -155,6 +155,14 @@ void check_motion(const Bench& bench, Account& account) {
                std::remainder((0.5 * 10.0 + 0.5 * 0.01 * 100.0) / degree_rad, 360.0), integrator);
 }
 
+struct RemovedAtEnd {
+  const fs::path& folder;
+  ~RemovedAtEnd() {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+  }
+};
+
 void add_options(Command& command, CommandOptions& options) {
   command.add_common(options);
 }
@@ -165,17 +173,12 @@ void run(const CommandOptions& options, const Program& program) {
   std::optional<Interruption::Watch> watch;
   if (program.interruption != nullptr) watch.emplace(*program.interruption, folder.parent_path());
   Account account(console);
-  try {
+  {
+    const RemovedAtEnd removed{folder};
     const Bench bench(options, folder);
     check_light(bench, account);
     check_motion(bench, account);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-    throw;
   }
-  std::error_code ignored;
-  fs::remove_all(folder, ignored);
   console.line(std::to_string(account.checks()) + " checks, " + std::to_string(account.wrong()) +
                " wrong");
   if (account.wrong() > 0) {

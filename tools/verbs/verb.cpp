@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <deque>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -50,15 +51,14 @@ void draw_bar(const std::string& what, double fraction) {
   std::fflush(stderr);
 }
 
-std::string seconds_above_zero(const std::string& text) {
-  const std::optional<double> seconds = number_in(text);
-  return seconds && *seconds > 0.0 ? "" : "found " + text + ", expected a number of seconds > 0";
-}
-
-std::string minutes_above_zero(const std::string& text) {
-  const std::optional<double> minutes = number_in(text);
-  const bool good = minutes && *minutes > 0.0 && *minutes <= 1e6;
-  return good ? "" : "found " + text + ", expected a number of minutes > 0";
+// Check of a positive number, at most `most`, of `unit`.
+std::function<std::string(const std::string&)> above_zero(
+    const char* unit, double most = std::numeric_limits<double>::infinity()) {
+  return [unit, most](const std::string& text) {
+    const std::optional<double> number = number_in(text);
+    const bool good = number && *number > 0.0 && *number <= most;
+    return good ? "" : "found " + text + ", expected a number of " + unit + " > 0";
+  };
 }
 
 std::string unknown_format(const std::string& list) {
@@ -179,7 +179,7 @@ void Command::add_traced_experiment(CommandOptions& common, Folder writes) {
       "standard error (0.01: 1 %)")
       .range = Option::Between<double>(1e-6, 1.0);
   add("--max-time", common.max_time_s, "Stop adding rays before this many seconds have passed")
-      .mistake = seconds_above_zero;
+      .mistake = above_zero("seconds");
   add("--allow-outside", common.allow_outside,
       "Follow links and paths of the model that lead out of its folder");
 }
@@ -196,7 +196,7 @@ void Command::add_checkpoint(CommandOptions& common) {
   add("--checkpoint", common.checkpoint_min,
       "Save the state of the run (VERB.checkpoint in the output folder) every so many minutes; "
       "after a kill the same command resumes")
-      .mistake = minutes_above_zero;
+      .mistake = above_zero("minutes", 1e6);
 }
 
 void experiment_options(Command& command, CommandOptions& options) {

@@ -90,9 +90,9 @@ RecordingOptions reading_in(const Settings& root) {
   return options;
 }
 
-// The named columns that are missing in each recording.
+// Throws InputError for named columns of [recording] that are missing in the recordings.
 template <typename... Recordings>
-std::vector<std::set<std::string>> absent_columns(const Recordings&... lists) {
+void refuse_absent(const Settings& root, const Recordings&... lists) {
   std::vector<std::set<std::string>> all;
   const auto add = [&](const auto& list) {
     for (const auto& one : list) {
@@ -103,7 +103,7 @@ std::vector<std::set<std::string>> absent_columns(const Recordings&... lists) {
     }
   };
   (add(lists), ...);
-  return all;
+  refuse_absent_columns(own_table(root, "recording", false), all);
 }
 
 using Progress = std::function<void(const std::string&)>;
@@ -149,8 +149,7 @@ DiagnosisRun diagnose_light_recordings(const RunOptions& options, const Settings
                                        const std::vector<fs::path>& holdout_paths,
                                        const Console& console) {
   const auto input = read_light_input(options, paths, holdout_paths, reading_in(root));
-  refuse_absent_columns(own_table(root, "recording", false),
-                        absent_columns(input->recordings, input->holdouts));
+  refuse_absent(root, input->recordings, input->holdouts);
   LightDiagnoseOptions how;
   how.threads = options.threads;
   how.progress = progress_on(console, "");
@@ -175,8 +174,7 @@ DiagnosisRun diagnose_module_curves(const RunOptions& options, const Settings& r
   const std::vector<LightRecording> recordings = read_light(paths, {}, design.reading, provenance),
                                     holdouts =
                                         read_light(holdout_paths, {}, design.reading, provenance);
-  refuse_absent_columns(own_table(root, "recording", false),
-                        absent_columns(design.references, recordings, holdouts));
+  refuse_absent(root, design.references, recordings, holdouts);
   Diagnosis diagnosis = diagnose_module(design, recordings, holdouts, options.threads);
   return {std::move(diagnosis), std::move(provenance), options.experiment,
           with_overrides(text, options.all_overrides()), true};
@@ -199,8 +197,7 @@ DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::pa
                              const std::vector<fs::path>& holdout_paths, const Console& console) {
   AttitudeExperiment experiment(options);
   MotionRecorded motion = read_motion(options, experiment, paths, holdout_paths);
-  refuse_absent_columns(own_table(experiment.settings(), "recording", false),
-                        absent_columns(motion.recordings, motion.holdouts));
+  refuse_absent(experiment.settings(), motion.recordings, motion.holdouts);
   motion.how.progress = progress_on(console, "");
   Diagnosis diagnosis = diagnose(motion.nominal, motion.recordings, motion.holdouts, motion.how);
   return {std::move(diagnosis), experiment.provenance(0), options.experiment,
@@ -230,9 +227,7 @@ DiagnosisRun diagnose_both(const RunOptions& options, const Settings& root,
   motion.how.progress = progress_on(console, "motion: ");
   motion.how.read_elsewhere = {"array_voltage_V", "array_current_A", "cell_temperature_K"};
   const auto input = read_light_input(options, recordings.light, holdouts.light, reading_in(root));
-  refuse_absent_columns(
-      own_table(root, "recording", false),
-      absent_columns(motion.recordings, motion.holdouts, input->recordings, input->holdouts));
+  refuse_absent(root, motion.recordings, motion.holdouts, input->recordings, input->holdouts);
   LightRecorded light{
       input->lab, input->nominal, std::move(input->recordings), std::move(input->holdouts), {}};
   light.how.threads = options.threads;
@@ -288,9 +283,7 @@ DiagnosisRun run_diagnose(const RunOptions& options, const std::vector<fs::path>
     throw InputError({options.experiment.string()}, "--recording", "nothing", "a recording (CSV)");
   }
   require_each_once(recordings, holdouts);
-  SettingsNode node = parse_toml(options.experiment_text(), options.experiment.string());
-  for (const std::string& assignment : options.all_overrides()) apply_override(node, assignment);
-  const Settings root(std::move(node));
+  const Settings root(options.settings(options.all_overrides()));
   if (root.has("module")) return diagnose_module_curves(options, root, recordings, holdouts);
   const RecordingOptions reading = reading_in(root);
   const Sorted sorted = sorted_by_content(recordings, reading);
@@ -316,9 +309,7 @@ std::string first_experiment(const std::vector<fs::path>& recordings, const fs::
     read_module(root, file.parent_path());
   } else {
     read_attitude_model(root);
-    const Settings recording = own_table(root, "recording", false);
-    read_recording_options(recording);
-    recording.finish();
+    reading_in(root);
   }
   root.finish();
   return text;
