@@ -212,6 +212,7 @@ class RecordingReader {
       throw error("rate_Hz", "a column with the time beside a stated rate", "only one of them");
     }
     separator_ = separator;
+    while (columns_.back().name.empty()) columns_.pop_back();
     take_old_names();
     for (size_t i = 0; i < columns_.size(); ++i) {
       const std::string& name = columns_[i].name;
@@ -229,8 +230,7 @@ class RecordingReader {
     return true;
   }
 
-  // Whether column `i` is no channel: the time, or a column without a name. Such columns are the
-  // row numbers of tables, or follow a separator at the end of every line.
+  // Whether column `i` is no channel: the time, or a column without a name, as of row numbers.
   bool is_left_out(size_t i) const { return i == time_column_ || columns_[i].name.empty(); }
 
   // The former name of the yaw of body x is "heading". A column of this name is the yaw unless the
@@ -252,6 +252,7 @@ class RecordingReader {
     RecordingReport& report = recording_.report;
     ++report.rows_read;
     split_cells(line, separator_, cells_);
+    while (cells_.size() > columns_.size() && trimmed(cells_.back()).empty()) cells_.pop_back();
     if (cells_.size() != columns_.size()) {
       if (++report.malformed_rows == 1) {
         first_malformed_ = error(

@@ -13,8 +13,8 @@
 #include "core/errors.h"
 #include "core/numerics/linear.h"
 #include "core/text/format.h"
-#include "diagnosis/guess/circle.h"
 #include "diagnosis/guess/guess.h"
+#include "diagnosis/guess/places.h"
 
 namespace photorque {
 namespace {
@@ -466,6 +466,26 @@ void add_drag(TomlDocument& document, const Machine& m) {
                                     {"sigma", number_node(10.0 * coefficient_1_s)}}});
 }
 
+// Adds the spring that pulls back a coordinate that oscillates. A fit that starts without a spring
+// does not find the frequency of many periods.
+void add_spring(TomlDocument& document, const Machine& m) {
+  const std::optional<Oscillation> found = oscillation_of(m.recordings.front());
+  if (!found) return;
+  const double stiffness_N_m = std::pow(2.0 * pi / found->period_s, 2);
+  const Eigen::Vector2d pull_N = stiffness_N_m * found->middle_m;
+  const double largest_N = rounded(pull_N.cwiseAbs().maxCoeff() + stiffness_N_m * found->most_m);
+  document.comment("CONFIRM: the place oscillates with a period of " + digits(found->period_s) +
+                   " s as on a spring, which is therefore assumed.");
+  SettingsNode::Table& table = document.append("disturbance");
+  document.set(table, "kind", {"sliding_spring"});
+  document.set(table, "stiffness_N_per_m",
+               {SettingsNode::Table{{"value", number_node(stiffness_N_m)},
+                                    {"sigma", number_node(0.1 * stiffness_N_m)}}});
+  document.set(table, "pull_N.value",
+               {SettingsNode::Array{{rounded(pull_N.x())}, {rounded(pull_N.y())}}});
+  document.set(table, "pull_N.sigma", {SettingsNode::Array{{largest_N}, {largest_N}}});
+}
+
 // Adds the sequence of roll, pitch and yaw.
 void add_sequence(TomlDocument& document, const Machine& m) {
   if (m.platform.turns_about_one_axis() || !m.has_all({"roll_rad", "pitch_rad", "yaw_rad"}) ||
@@ -501,8 +521,12 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
   };
   for (const fs::path& path : recordings) m.names.push_back(path.string());
   read_all();
-  if (m.recordings.front().find("angle_rad") == nullptr) circle = circle_of(m.recordings.front());
-  if (circle) read_all();
+  circle = circle_of(m.recordings.front());
+  if (circle) {
+    // An angle beside coordinates on a circle was computed from them, about any origin.
+    std::erase_if(columns, [](const GuessedColumn& c) { return c.channel.starts_with("angle_"); });
+    read_all();
+  }
   infer_machine(m);
   if (m.rate_from) {
     columns = with_rate_from(std::move(columns), *m.rate_from);
@@ -524,6 +548,7 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
   SettingsNode::Table& platform = add_machine(document, m);
   if (m.platform.topology == Topology::free) add_inertia(document, platform, m.runs);
   if (m.platform.turns_about_one_axis() && !m.platform.slides()) add_drag(document, m);
+  if (m.platform.slides()) add_spring(document, m);
   const char *const rate_noise = "gyro.noise_rad_s", *const angle_noise = "angle.noise_arcsec";
   const bool has_gyro = m.runs.front().has_gyro, has_angle = m.runs.front().has_some_attitude();
   if (has_gyro) add_noise(document, m.runs, {3, 4, 5}, rate_noise, 1.0);

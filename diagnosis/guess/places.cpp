@@ -1,4 +1,4 @@
-#include "diagnosis/guess/circle.h"
+#include "diagnosis/guess/places.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/constants.h"
+#include "core/numerics/median.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -69,6 +70,48 @@ std::optional<Circle> circle_of(const Recording& recording) {
   const bool is_arc = (turns >= 2 && height > scatters * relative) || range_rad > round_rad;
   if (!(radius_m > 0.0) || !(relative < max_scatter) || !is_arc) return std::nullopt;
   return Circle{centre, radius_m, relative};
+}
+
+std::optional<Oscillation> oscillation_of(const Recording& recording) {
+  constexpr size_t fewest_half_periods = 6;
+  constexpr double least_fullness = 0.57;
+  Oscillation found;
+  for (Eigen::Index axis = 0; axis < 2; ++axis) {
+    const Channel* coordinate = recording.find(axis == 0 ? "x_m" : "y_m");
+    if (coordinate == nullptr) continue;
+    std::vector<double> time_s, value_m;
+    for (size_t i = 0; i < recording.rows(); ++i) {
+      if (!std::isfinite(coordinate->values[i])) continue;
+      time_s.push_back(recording.time_s[i]);
+      value_m.push_back(coordinate->values[i]);
+    }
+    if (value_m.empty()) continue;
+    const double middle_m = upper_median(value_m);
+    found.middle_m[axis] = middle_m;
+    double farthest_m = 0.0, most_m = 0.0, sum_m = 0.0;
+    std::vector<double> between_s, fullness;
+    size_t before = 0;
+    for (size_t i = 1; i < value_m.size(); ++i) {
+      if ((value_m[i - 1] < middle_m) != (value_m[i] < middle_m)) {
+        if (before > 0 && most_m > 0.0) {
+          between_s.push_back(time_s[i] - time_s[before]);
+          fullness.push_back(sum_m / (static_cast<double>(i - before) * most_m));
+        }
+        before = i;
+        most_m = sum_m = 0.0;
+      }
+      const double deviation_m = std::abs(value_m[i] - middle_m);
+      sum_m += deviation_m;
+      most_m = std::max(most_m, deviation_m);
+      farthest_m = std::max(farthest_m, deviation_m);
+    }
+    const bool is_harmonic =
+        between_s.size() >= fewest_half_periods && upper_median(fullness) > least_fullness;
+    if (!is_harmonic || !(farthest_m > found.most_m)) continue;
+    found.period_s = 2.0 * upper_median(between_s);
+    found.most_m = farthest_m;
+  }
+  return found.period_s > 0.0 ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace photorque

@@ -1,4 +1,5 @@
-// Coordinates on a circle: a pendulum's bob or a mark on a turntable, seen by a camera.
+// The machine that recorded coordinates show: a pendulum's bob or a mark on a turntable goes on a
+// circle, a weight on a spring oscillates about its middle.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,5 +19,17 @@ struct Circle {
 // more than 2 rad. The circle is fitted by linear least squares (I. Kåsa, IEEE Trans. Instrum.
 // Meas. 25, 8 (1976)).
 std::optional<Circle> circle_of(const Recording& recording);
+
+// A harmonic oscillation.
+struct Oscillation {
+  double period_s = 0.0;
+  Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
+  double most_m = 0.0;  // largest deviation from the middle
+};
+
+// The oscillation of x_m or y_m, that of the larger deviations, if it passes its middle at least
+// seven times. A spring keeps a body long at the turning points: between two passages, the mean
+// deviation is 2/π of the largest one. It is half for a body that goes to and fro between cushions.
+std::optional<Oscillation> oscillation_of(const Recording& recording);
 
 }  // namespace photorque

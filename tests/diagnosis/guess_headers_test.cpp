@@ -5,11 +5,13 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 
 #include "attitude/recordings/recording.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "diagnosis/guess/guess.h"
 #include "tests/files.h"
 #include "tests/refusal.h"
@@ -135,13 +137,20 @@ TEST_F(Headers, OfAnglesAndRates) {
 }
 
 TEST_F(Headers, OfTimes) {
-  const Expected table[] = {{"Zeit t / s", "t", 1.0},         {"t/s", "t", 1.0},
-                            {"t / min", "t", 60.0},           {"t [min]", "t", 60.0},
-                            {"Time ( s )", "t", 1.0},         {"Zeit/ms", "t", 1e-3},
-                            {"Timestamp (µs)", "t", 1e-6},    {"temps (ms)", "t", 1e-3},
-                            {"Tiempo [seg]", "t", 1.0},       {"Tempo (secondi)", "t", 1.0},
-                            {"tempo em minutos", "t", 60.0},  {"timeMs", "t", 1e-3},
-                            {"Elapsed Time (h)", "t", 3600.0}};
+  const Expected table[] = {{"Zeit t / s", "t", 1.0},
+                            {"t/s", "t", 1.0},
+                            {"t / min", "t", 60.0},
+                            {"t [min]", "t", 60.0},
+                            {"Time ( s )", "t", 1.0},
+                            {"Zeit/ms", "t", 1e-3},
+                            {"Timestamp (µs)", "t", 1e-6},
+                            {"temps (ms)", "t", 1e-3},
+                            {"Tiempo [seg]", "t", 1.0},
+                            {"Tempo (secondi)", "t", 1.0},
+                            {"tempo em minutos", "t", 60.0},
+                            {"timeMs", "t", 1e-3},
+                            {"Elapsed Time (h)", "t", 3600.0},
+                            {"TimeSinceFirstFrame(s)", "t", 1.0}};
   for (const Expected& expected : table) {
     expected.expect_of(channels(expected.header + std::string(";rate_rpm")).at(0));
   }
@@ -151,7 +160,8 @@ TEST_F(Headers, OfTimes) {
 TEST_F(Headers, OfOtherQuantitiesAreNoMotion) {
   for (const char* header :
        {"Frequenz f / Hz", "FFT f_3 / rad", "angle error (deg)", "temperature (°C)",
-        "Angular acceleration (rad/s²)", "Unsicherheit / rad"}) {
+        "Angular acceleration (rad/s²)", "Unsicherheit / rad", "dTime(s)", "Time step (s)",
+        "d theta (deg)", "frame rate (1/s)"}) {
     EXPECT_EQ(channels(std::string("t_s;") + header).at(1), "") << header;
   }
 }
@@ -189,6 +199,19 @@ TEST_F(Headers, LargeCoordinatesWithoutAUnitAreMillimetres) {
   };
   EXPECT_THAT(names("0,310,4\n0.1,312,5\n"), testing::ElementsAre("t_s", "x_mm", "y_mm"));
   EXPECT_THAT(names("0,0.31,0.4\n0.1,0.32,0.5\n"), testing::ElementsAre("t_s", "x_m", "y_m"));
+}
+
+// A swing over more than a turn, and an angle that starts again after 360, are in degrees.
+TEST_F(Headers, AnglesWithoutAUnitThatReturnAreInDegrees) {
+  const auto unit_of = [&](const std::function<double(int)>& angle) {
+    std::string text = "Time,Angle\n";
+    for (int i = 0; i < 100; ++i) text += std::to_string(i) + "," + std::to_string(angle(i)) + "\n";
+    return channels_in(test_file("angle.csv", text)).at(1);
+  };
+  EXPECT_EQ(unit_of([](int i) { return 25.0 * std::cos(0.3 * i); }), "angle_deg");
+  EXPECT_EQ(unit_of([](int i) { return std::fmod(31.0 * i, 360.0); }), "angle_deg");
+  EXPECT_EQ(unit_of([](int i) { return 1.2 * std::cos(0.3 * i); }), "angle_rad");
+  EXPECT_EQ(unit_of([](int i) { return 4.0 * i; }), "angle_rad");
 }
 
 TEST_F(Headers, NumbersAreAxesIfThereAreThree) {
@@ -272,6 +295,15 @@ TEST_F(Headers, PlacesOnACircleAreRemarked) {
   EXPECT_THAT(remarked, AllOf(HasSubstr("radius 1.5 m"), HasSubstr("pivot_m = [0.2, ")));
   EXPECT_THAT(guess_experiment({test_file("parabola.txt", parabola)}, "."),
               Not(HasSubstr("radius")));
+  // An angle beside them, here about another origin, is not used.
+  std::string both = "t\tx\ty\tangle (rad)\n";
+  for (int i = 0; i < 200; ++i) {
+    const double at = 0.3 * std::cos(0.1 * i);
+    both += printed("%.2f\t%.5f\t%.5f\t%.5f\n", 0.03 * i, 1.5 * std::sin(at), 1.5 * std::cos(at),
+                    1.3 * at);
+  }
+  EXPECT_THAT(guess_experiment({test_file("both.txt", both)}, "."),
+              AllOf(HasSubstr("pivot_m"), Not(HasSubstr("angle_rad ="))));
 }
 
 }  // namespace

@@ -393,6 +393,38 @@ TEST(Guess, OneCoordinateOrASpeedIsAlongALine) {
       AllOf(HasSubstr("topology = \"planar\""), HasSubstr("velocity_x_km_h = \"speed (km/h)\"")));
 }
 
+// x = x₀ + a e^(−γt) cos ωt has the stiffness ω² + γ² for a unit mass. A body between cushions has
+// no spring.
+TEST(Guess, AWeightThatOscillatesHangsOnASpring) {
+  constexpr double omega_rad_s = 6.1, damping_1_s = 0.03, middle_m = 0.14;
+  Noise noise(12, 1e-3);
+  std::string spring = "t,x\n", cushions = spring;
+  for (int i = 0; i < 500; ++i) {
+    const double t = i / 30.0, phase = std::remainder(0.16 * t, 1.0);
+    const double x = 0.05 * std::exp(-damping_1_s * t) * std::cos(omega_rad_s * t);
+    spring += printed("%.4f,%.5f\n", t, middle_m + x + noise());
+    cushions += printed("%.4f,%.5f\n", t, std::abs(phase) + noise());
+  }
+  const Settings guessed = settings_in(guess_experiment({test_file("spring.csv", spring)}, "."));
+  const std::vector<Settings> effects = guessed.tables("disturbance");
+  ASSERT_EQ(effects.size(), 1U);
+  EXPECT_EQ(effects[0].text("kind"), "sliding_spring");
+  const double stiffness = omega_rad_s * omega_rad_s + damping_1_s * damping_1_s;
+  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, 0.03 * stiffness);
+  EXPECT_THAT(guess_experiment({test_file("cushions.csv", cushions)}, "."),
+              Not(HasSubstr("sliding_spring")));
+}
+
+// The turning points of a swing alternate in sign: their differences contain no noise.
+TEST(Guess, TurningPointsDetermineNoNoise) {
+  std::string text = "t_s,angle_rad\n";
+  for (int i = 0; i < 120; ++i) {
+    text += printed("%.2f,%.4f\n", 0.68 * i, 0.35 * std::pow(-0.995, i));
+  }
+  EXPECT_THAT(guess_experiment({test_file("turns.csv", text)}, "."),
+              Not(HasSubstr("noise_arcsec =")));
+}
+
 // θ'' = −k θ − c θ': a damped cosine, which a hand releases after 0.4 s, with readings of 3 mrad.
 TEST(Guess, ATorsionPendulumTurnsAboutAnUprightAxis) {
   constexpr double k = 10.5, c = 0.3, released_s = 0.4, noise_rad = 0.003;
