@@ -36,7 +36,7 @@ noise_arcsec = [37, 37, 12]
 [sensors.gyro]
 noise_rad_s = 2e-4)";
 
-Settings read(const std::string& text) {
+Settings settings_from(const std::string& text) {
   return Settings(std::make_shared<const SettingsNode>(parse_toml(text, "improved.toml")));
 }
 
@@ -104,7 +104,7 @@ TEST(Improved, FindsKeysWithoutAHeaderOfTheirOwn) {
 // Uncertain values act as fitted; as it was written it stays as a comment.
 TEST(Improved, PutsFittedNominalValuesInTheirPlaces) {
   const std::string text = improved(written, sample_diagnosis());
-  const Disturbance unbalance = read_attitude_model(read(text)).model.disturbances.at(0);
+  const Disturbance unbalance = read_attitude_model(settings_from(text)).model.disturbances.at(0);
   const double value[] = {1e-6, 2e-6, -3e-5};
   for (size_t i = 0; i < 3; ++i) {
     EXPECT_DOUBLE_EQ(unbalance.parameters[i].value, value[i]);
@@ -142,7 +142,7 @@ latitude_deg = 40
   d.priors_refined = {{"disturbance[1].offset_m", {3e-6, 4e-6, -5e-5}, {1e-8, 1e-8, 1e-8}},
                       {"disturbance[7].scale", {1.5}, {0.5}}};
   const std::string text = improved(many, d);
-  const AttitudeModel model = read_attitude_model(read(text)).model;
+  const AttitudeModel model = read_attitude_model(settings_from(text)).model;
   EXPECT_DOUBLE_EQ(model.disturbances.at(0).parameters[0].value, 2e-5);
   EXPECT_DOUBLE_EQ(model.disturbances.at(1).parameters[0].value, 3e-6);
   EXPECT_DOUBLE_EQ(model.disturbances.at(1).parameters[2].value, -5e-5);
@@ -189,7 +189,7 @@ tilt_deg = { value = 12, sigma = 0.5 }
 
 TEST(Improved, ActsWithTheFittedNumbersAndTheirErrors) {
   const std::string text = improved(written, sample_diagnosis());
-  const AttitudeModel model = read_attitude_model(read(text)).model;
+  const AttitudeModel model = read_attitude_model(settings_from(text)).model;
   ASSERT_GE(model.disturbances.size(), 3u);
   const Disturbance& dipole = model.disturbances[1];
   ASSERT_EQ(dipole.kind, "magnetic_dipole");
@@ -205,7 +205,7 @@ TEST(Improved, ActsWithTheFittedNumbersAndTheirErrors) {
 
 TEST(Improved, PropagatesTheFirstRecordingAgain) {
   const std::string text = improved(written, sample_diagnosis());
-  const PropagationRun run = read_propagation(read(text));
+  const PropagationRun run = read_propagation(settings_from(text));
   EXPECT_DOUBLE_EQ(run.duration_s, 200.0);
   EXPECT_DOUBLE_EQ(run.initial.rate_body_rad_s.z(), 0.1);
   EXPECT_EQ(propagate(run).recording.rows(), 2001u);
@@ -224,17 +224,17 @@ TEST(Improved, StartsWithTheAppendage) {
                 ""}};
   d.effects[0].initial_states = {{"initial_angle_deg", {0.5}, {}},
                                  {"initial_rate_rad_s", {-0.02}, {}}};
-  const PropagationRun run = read_propagation(read(improved(written, d)));
+  const PropagationRun run = read_propagation(settings_from(improved(written, d)));
   ASSERT_EQ(run.initial.extra.size(), 2u);
   EXPECT_NEAR(run.initial.extra[0], 0.5 * pi / 180.0, 1e-12);
   EXPECT_NEAR(run.initial.extra[1], -0.02, 1e-12);
   const std::string own = written + "\n[propagate]\nduration_s = 5\n";
-  EXPECT_EQ(read_propagation(read(improved(own, d))).initial.extra[0], 0.0);
+  EXPECT_EQ(read_propagation(settings_from(improved(own, d))).initial.extra[0], 0.0);
 }
 
 TEST(Improved, LeavesAFlightOfTheUsersAlone) {
   const std::string own = written + "\n[propagate]\nduration_s = 5\n";
-  const PropagationRun run = read_propagation(read(improved(own, sample_diagnosis())));
+  const PropagationRun run = read_propagation(settings_from(improved(own, sample_diagnosis())));
   EXPECT_DOUBLE_EQ(run.duration_s, 5.0);
 }
 
@@ -289,7 +289,7 @@ TEST(Improved, HoldsEveryKindWithNumbers) {
     d.effects = {{kind, 0.9, parameters, {}, ""}};
     const std::string text = improved(seen_by_markers, d);
     EXPECT_NO_THROW({
-      const AttitudeModel model = read_attitude_model(read(text)).model;
+      const AttitudeModel model = read_attitude_model(settings_from(text)).model;
       EXPECT_EQ(model.disturbances.at(1).kind, kind);
     }) << kind;
   }
@@ -308,7 +308,7 @@ TEST(Improved, HoldsAnEmpiricalTorque) {
                        {"coefficients_N_m", {1e-6, -2e-6}, {1e-8, 2e-8}}};
   d.empirical = {torque};
   const std::string text = improved(written, d);
-  const AttitudeModel model = read_attitude_model(read(text)).model;
+  const AttitudeModel model = read_attitude_model(settings_from(text)).model;
   ASSERT_EQ(model.disturbances.size(), 3u);
   EXPECT_EQ(model.disturbances[1].kind, "turbine_torque");
   const Disturbance& found = model.disturbances[2];
@@ -325,7 +325,7 @@ TEST(Improved, HoldsAnEmpiricalTorque) {
 TEST(Improved, CommentsStayComments) {
   Diagnosis d = sample_diagnosis();
   d.sentence = "one\nmass_kg = 3";
-  EXPECT_NO_THROW(read(improved(written, d)));
+  EXPECT_NO_THROW(settings_from(improved(written, d)));
 }
 
 }  // namespace
