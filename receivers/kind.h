@@ -76,6 +76,6 @@ std::vector<Key> surface_grid_keys(Side default_side);
 
 // Reference point of torques.
 inline constexpr Vec3Key torque_point("about_m", {0.0, 0.0, 0.0},
-                                      "the point that torques are about, body axes");
+                                      "reference point of the torques, body axes");
 
 }  // namespace photorque

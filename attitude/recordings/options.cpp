@@ -10,9 +10,9 @@ namespace {
 namespace recording_key {
 constexpr OtherKey columns(
     "columns", Key::a_table,
-    "`{ gyro_x_rad_s = \"wx\", … }`: the file's name of a channel. A unit in the "
-    "channel's key converts: `gyro_x_deg_s = \"wx\"`",
-    {.usually = "names as they are"});
+    "`{ gyro_x_rad_s = \"wx\", … }`: names of the columns in the file. The unit in a "
+    "key is that of the column: `gyro_x_deg_s = \"wx\"`",
+    {.usually = "the names of the channels"});
 constexpr TextsKey header("header",
                           "the names of the columns of a file without a header: "
                           "`[\"t_s\", \"angle_deg\"]`",

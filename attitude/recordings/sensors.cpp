@@ -59,8 +59,8 @@ constexpr NumberKey power_noise("power_noise_W", 0.0, Range::not_negative(),
 constexpr TableKey power("power", "meters of the battery current and of the power of the array");
 constexpr ChoiceKey noise_is(
     "noise_is",
-    {{"found", "`diagnose` looks for level and correlation of the noise in the recordings"},
-     {"stated", "it takes them as stated here"}},
+    {{"found", "`diagnose` estimates level and correlation of the noise from the recordings"},
+     {"stated", "it uses the values given here"}},
     0, "origin of the noise level");
 }  // namespace sensor_key
 

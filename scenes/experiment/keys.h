@@ -22,8 +22,7 @@ inline constexpr NumberKey metres_per_unit(
     "scale of a glTF file's lengths: 0.001 for a model in millimetres");
 inline constexpr Vec3Key centre_of_rotation(
     "centre_of_rotation_m", {0.0, 0.0, 0.0},
-    "where the model has the centre of rotation, in body axes (z up): the model is moved so that "
-    "this point is the origin");
+    "position of the centre of rotation in the model, body axes (z up); it becomes the origin");
 inline constexpr FlagKey textures(
     "textures", false,
     "true: materials that are derived from drawing values take their base colour from its picture "
@@ -132,7 +131,7 @@ inline constexpr NumberKey flow_speed("speed_m_s", Range::positive(),
 inline constexpr NumberKey gas_temperature("temperature_K", Range::positive(),
                                            "temperature of the gas");
 inline constexpr NumberKey molar_mass("molar_mass_kg_mol", Range::positive(),
-                                      "mean molar mass of the gas; 0.016 of atomic oxygen");
+                                      "mean molar mass of the gas (atomic oxygen: 0.016)");
 inline constexpr NumberKey accommodation(
     "accommodation", 1.0, Range::fraction(),
     "fraction α of their excess energy that molecules leave at a surface");

@@ -21,7 +21,7 @@ constexpr NumberKey step("step_s", 1.0, {1e-3, 3600.0},
 constexpr IntegerKey rays("rays", 256, int64_t{1} << 40, "number of rays per attitude",
                           {.usually = "`trace.rays`, at most 2^18"});
 constexpr IntegerKey max_traces("max_traces", 20000, 100, 10'000'000,
-                                "attitudes of a table, after which it is refined no further");
+                                "maximum number of traced attitudes of a table");
 constexpr NumberKey max_tilt("max_tilt_deg", {0.0, pi, true, false},
                              "tilt of the first table; motion beyond it starts a wider one",
                              {.usually = "twice the initial tilt, at least 5"});

@@ -53,9 +53,10 @@ inline constexpr NumberKey voltage_noise(
 inline constexpr NumberKey correlation_points(
     "correlation_points", 0.0, Range::not_negative(),
     "readings over which the noise of the current falls off (slow drift of the light)");
-inline constexpr IntegerKey substrings(
-    "substrings", 0, 0, 100,
-    "instead: one curve of a partly shaded string; 0: a whole string in even light");
+inline constexpr IntegerKey substrings("substrings", 0, 0, 100,
+                                       "number of groups of cells under different light in one "
+                                       "curve of a partly shaded string; 0: all "
+                                       "cells have the same light");
 inline constexpr FlagKey even_voltage_steps(
     "even_voltage_steps", false,
     "repeats of one even ramp: reduces the noise of the voltages by averaging");

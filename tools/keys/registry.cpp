@@ -38,7 +38,7 @@ Key effect_table() {
   std::vector<Key::Choice> kinds = light_effects();
   for (Key::Choice& of_module : module_effects()) add_choice(kinds, std::move(of_module));
   const auto result_key = [](const char* name, unsigned forms) {
-    return OtherKey(name, forms, "further result of a diagnosis, without effect here",
+    return OtherKey(name, forms, "additional result of a diagnosis; the commands ignore it",
                     {.optional = true});
   };
   return Key::tables(

@@ -26,7 +26,7 @@ enum photorque_packet_kind {
 
 enum photorque_flag {
   PHOTORQUE_NEW = 1,    /* the readings are new to the client; if unset, only the tick is */
-  PHOTORQUE_ANSWER = 2, /* lockstep: the run waits for a command whose `tick` is `now_tick` */
+  PHOTORQUE_ANSWER = 2, /* lockstep: the server waits for a command whose `tick` is `now_tick` */
   PHOTORQUE_LATE = 4,   /* sent after the deadline */
   PHOTORQUE_LAST = 8,   /* the run has ended */
   PHOTORQUE_TRUTH = 16  /* true_attitude and true_rate_rad_s are filled in */

@@ -23,8 +23,8 @@ constexpr ScalarKey stiffness(
     "k in T = −k φ; φ is the smallest rotation to zero attitude and jumps at half a turn");
 
 constexpr ScalarKey pull("pull_N_m", 0.0, {},
-                         "torque at zero attitude, about the one axis (where it is slack at "
-                         "pull/k) or about body z",
+                         "torque at zero attitude, about the axis of a one-axis platform or "
+                         "about body z; it vanishes at the angle pull/k",
                          stiffness.end());
 
 namespace key {

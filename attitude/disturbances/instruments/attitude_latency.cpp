@@ -4,7 +4,7 @@
 namespace photorque::kinds::attitude_latency {
 namespace {
 
-constexpr ScalarKey latency("latency_s", {}, "age of the reported attitude");
+constexpr ScalarKey latency("latency_s", {}, "time from a measured attitude to its time stamp");
 
 struct AttitudeLatency final : LawOf<AttitudeLatency> {
   template <class T>

@@ -40,7 +40,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 DisturbanceKind kind() {
   return {
       .name = "periodic_torque",
-      .summary = "a vibration on board at one frequency",
+      .summary = "a sinusoidal torque in body axes, as of a machine on board",
       .read = read,
       .screening = {.parametrisations =
                         {{"a vibration on board drives the platform at one frequency",

@@ -7,7 +7,7 @@
 namespace photorque::kinds::table_slope {
 namespace {
 
-constexpr KeyOf<2> slope("slope_rad", "slope of the table along lab x and y; small");
+constexpr KeyOf<2> slope("slope_rad", "slope of the table along lab x and y (small angles)");
 
 struct TableSlope final : ForceLaw<TableSlope> {
   template <class T>

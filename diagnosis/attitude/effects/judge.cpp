@@ -85,7 +85,7 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
     if (c.effect.how.scan != Scan::frequency) continue;
     const Disturbance& tone = trial.fit.best.model.disturbances[trial.disturbances[i]];
     if (parameter_of(tone, "frequency_Hz").value * all.longest_run_s < limits.min_periods) {
-      return "its period is as long as the recording: any slow torque looks like that";
+      return "the recording contains too few periods: any slow torque has the same effect";
     }
   }
   const double allowed = std::max(limits.max_inertia_change, stated_inertia_change(trial));
