@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "core/constants.h"
@@ -108,7 +109,12 @@ std::optional<Oscillation> oscillation_of(const Recording& recording) {
     const bool is_harmonic =
         between_s.size() >= fewest_half_periods && upper_median(fullness) > least_fullness;
     if (!is_harmonic || !(farthest_m > found.most_m)) continue;
-    found.period_s = 2.0 * upper_median(between_s);
+    // The mean without noise near the middle or left-out rows: readings are too coarse for a
+    // median.
+    const double usual_s = upper_median(between_s);
+    std::erase_if(between_s, [&](double s) { return std::abs(s - usual_s) > 0.3 * usual_s; });
+    found.period_s = 2.0 * std::accumulate(between_s.begin(), between_s.end(), 0.0) /
+                     static_cast<double>(between_s.size());
     found.most_m = farthest_m;
   }
   return found.period_s > 0.0 ? std::optional(found) : std::nullopt;

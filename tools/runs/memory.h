@@ -9,8 +9,9 @@
 
 namespace photorque {
 
-// Memory that a process of the control group `group` may still use [bytes]: the least of what is
-// left to the group and to those above it, whose folders lie in `mount`; none without a limit.
+// Memory that a process of the control group `group` may still use [bytes]: the smallest
+// remaining amount of the group and of those above it, whose folders lie in `mount`; none without a
+// limit.
 std::optional<uint64_t> left_of_group_bytes(const std::filesystem::path& mount,
                                             const std::filesystem::path& group);
 
