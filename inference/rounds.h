@@ -359,15 +359,12 @@ class Rounds {
     std::vector<Trial> found;
     const std::vector<CandidateTraits>& all = domain_.candidates();
     const bool is_alone = at.candidates.size() < 2 && !has_place(at.candidates, all);
-    if (is_alone) return found;
-    const bool is_explained = explains(at) && !has_empirical(at);
+    if (is_alone || (explains(at) && !has_empirical(at))) return found;
     const Runs averages = slow_runs(domain_, at, set_);
     const Terms<D> terms = domain_.terms_of(at);
     for (const Term<typename D::Start>& term : terms) {
       const CandidateTraits& traits = all[term.candidate];
-      if (traits.is_linear || traits.is_empirical) continue;
-      // A vibration hardly raises χ², so an oscillation is tried at other frequencies in any case.
-      if (is_explained && !traits.is_fast) continue;
+      if (traits.is_linear || traits.is_fast || traits.is_empirical) continue;
       Members<typename D::Start> rest = members_of(terms);
       std::erase_if(rest, [&](const auto& other) {
         return other.term.candidate == term.candidate || all[other.term.candidate].is_empirical;
