@@ -132,12 +132,13 @@ class Browser:
     def size(self, width, height):
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
 
-    def key(self, key):
-        """One key, as its name in KeyboardEvent.key, to what has the focus."""
+    def key(self, key, draws=True):
+        """One key, as its name in KeyboardEvent.key, to what has the focus. `draws`: whether the page changes."""
         codes = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Home": 36, "Tab": 9}
         for kind in ("keyDown", "keyUp"):
             self.call("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=codes.get(key, 0))
-        self.settle()
+        if draws:
+            self.settle()
 
     def point(self, x, y):
         """Moves the pointer, in pixels of the window."""

@@ -111,16 +111,22 @@ def cube_root(luminance):
     return luminance ** (1 / 3) if luminance > 216 / 24389 else (24389 / 27 * luminance + 16) / 116
 
 
+def tearDownModule():
+    if PageTest.browser:
+        PageTest.browser.close()
+
+
 class PageTest(unittest.TestCase):
+    browser = None  # one for all tests: it takes seconds to start
+
     @classmethod
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temporary.name)
-        cls.browser = Browser()
+        PageTest.browser = PageTest.browser or Browser()
 
     @classmethod
     def tearDownClass(cls):
-        cls.browser.close()
         cls.temporary.cleanup()
 
     def open(self, page):
@@ -159,7 +165,7 @@ class PageTest(unittest.TestCase):
         self.assertGreater(wanted, 10)
         reached = set()
         for _ in range(wanted + 2):
-            self.browser.key("Tab")
+            self.browser.key("Tab", draws=False)
             at, style, width = self.browser.value("""(() => {
               const e = document.activeElement, style = getComputedStyle(e);
               return [window.wanted.indexOf(e), style.outlineStyle, parseFloat(style.outlineWidth)];
