@@ -198,6 +198,9 @@ TEST(Report, WritesUnitsAsPeopleReadThem) {
   EXPECT_EQ(printed_unit("N_m_s2"), "N m s²");
   EXPECT_EQ(printed_unit("N_m_s_per_T2"), "N m s/T²");
   EXPECT_EQ(printed_unit("m_s2"), "m/s²");
+  EXPECT_EQ(printed_unit("kg_s"), "kg/s");
+  EXPECT_EQ(printed_unit("kg_m"), "kg/m");
+  EXPECT_EQ(printed_unit("kg_m2"), "kg m²");
 }
 
 // Scripts find every number of diagnosis.json by its key, with all of its digits.

@@ -12,22 +12,14 @@ namespace photorque {
 namespace {
 
 // Units in the names of keys that need a fraction bar or special characters in a label.
-constexpr std::array<std::pair<const char*, const char*>, 16> unit_texts = {
-    {{"W_m2", "W/m²"},
-     {"W_K", "W/K"},
-     {"mW_cm2", "mW/cm²"},
-     {"uN_m", "µN m"},
-     {"m_s2", "m/s²"},
-     {"m_s", "m/s"},
-     {"rad_s", "rad/s"},
-     {"rad_s2", "rad/s²"},
-     {"deg_s", "deg/s"},
-     {"W_sr", "W/sr"},
-     {"um", "µm"},
-     {"ohm", "Ω"},
-     {"kg_m3", "kg/m³"},
-     {"uT", "µT"},
-     {"us", "µs"},
+constexpr std::array<std::pair<const char*, const char*>, 29> unit_texts = {
+    {{"W_m2", "W/m²"},       {"W_K", "W/K"},       {"mW_cm2", "mW/cm²"}, {"uN_m", "µN m"},
+     {"m_s2", "m/s²"},       {"m_s", "m/s"},       {"rad_s", "rad/s"},   {"rad_s2", "rad/s²"},
+     {"deg_s", "deg/s"},     {"W_sr", "W/sr"},     {"um", "µm"},         {"ohm", "Ω"},
+     {"kg_m3", "kg/m³"},     {"uT", "µT"},         {"us", "µs"},         {"kg_s", "kg/s"},
+     {"kg_m", "kg/m"},       {"kg_mol", "kg/mol"}, {"g_mol", "g/mol"},   {"A_W", "A/W"},
+     {"V_K", "V/K"},         {"J_kg", "J/kg"},     {"Wh_kg", "Wh/kg"},   {"S_m", "S/m"},
+     {"cm_s", "cm/s"},       {"mm_s", "mm/s"},     {"km_h", "km/h"},     {"rev_s", "rev/s"},
      {"m_per_Ah", "m/(A h)"}}};
 
 std::string spaced(std::string text) {
