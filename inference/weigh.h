@@ -56,6 +56,7 @@ class Weighing {
     refit_from_best();
     search_on();
     search_swings();
+    relocate_oscillations();
     add_without_each();
     exchange_places();
     restart_from_joint_fit();
@@ -167,7 +168,7 @@ class Weighing {
   // Excess of the held-out χ² over the value that the parameter errors of the train fit predict
   // [sigma]; 0 where unknown.
   double sigma_of_prediction(const Trial& train, const Trial& joint) const {
-    if constexpr (std::same_as<std::decay_t<decltype(train.fit)>, Fit>) {
+    if constexpr (std::derived_from<std::decay_t<decltype(train.fit)>, Fit>) {
       if (train.holdout_chi2_per_sample) {
         return inference::held_out_sigma(train.fit, joint.fit, *train.holdout_chi2_per_sample,
                                          noise_of(train));
@@ -254,10 +255,6 @@ class Weighing {
     const auto swings = [&](size_t c) { return all[c].swings; };
     if (std::ranges::none_of(from.joint.candidates, is_limit)) return;
     const Effort effort = within_reach(until_convergence(limits_), from.joint, limits_);
-    const auto add_if_near = [&](Trial joint) {
-      if (joint.log_evidence < best().joint.log_evidence - limits_.held_out.within) return;
-      add_joint(std::move(joint));
-    };
     std::vector<Trial> parents = {from.joint};
     if (std::ranges::any_of(from.joint.candidates, swings)) {
       parents.push_back(together_without(from.joint, swings, until_convergence(limits_)));
@@ -270,6 +267,31 @@ class Weighing {
         add_if_near(together_without(both, is_limit, effort));
       }
     }
+  }
+
+  // The frequency of an oscillation was found with a poorer model, and a fit does not move far from
+  // it. Each oscillation of the best explanation is removed, and all are scanned again.
+  void relocate_oscillations() {
+    const Leader from = best();
+    const std::vector<CandidateTraits>& all = domain_.candidates();
+    const auto oscillates = [](const CandidateTraits& c) { return c.is_fast && !c.swings; };
+    const Effort effort = within_reach(until_convergence(limits_), from.joint, limits_);
+    for (const size_t candidate : from.joint.candidates) {
+      if (!oscillates(all[candidate])) continue;
+      const Trial parent = together_without(
+          from.joint, [&](size_t c) { return c == candidate; }, until_convergence(limits_));
+      const Terms<D> terms =
+          terms_to_add(domain_, parent, addable(parent.candidates, all, oscillates), all_runs_,
+                       slow_runs<D>(domain_, parent, {all_runs_}), threads_);
+      for (const Trial& with : extend_by_each(domain_, parent, terms, all_runs_, threads_)) {
+        add_if_near(domain_.refit(with, all_runs_, domain_.initial_conditions_of(with), effort));
+      }
+    }
+  }
+
+  void add_if_near(Trial joint) {
+    if (joint.log_evidence < best().joint.log_evidence - limits_.held_out.within) return;
+    add_joint(std::move(joint));
   }
 
   // Fits the candidates of `joint`, except those that are left out, to all runs.

@@ -327,6 +327,31 @@ TEST(Weigh, FindsAnEffectThatOnlyAllRunsShow) {
   EXPECT_TRUE(answer(terms, train, held, mutant).names.empty());
 }
 
+// Two tones of different frequency, of which one may be named: a search that ended at the weaker
+// finds the stronger in all runs together.
+TEST(Weigh, FindsTheFrequencyOfAnOscillationAgain) {
+  constexpr size_t degree_2 = 0, of_tone = 1;
+  constexpr double weak = 20.0, strong = 31.0;
+  const auto found = [&](bool swings) {
+    std::vector<Term> terms = {polynomial(2), tone()};
+    terms[of_tone].traits.swings = swings;
+    const LineDomain domain(terms, {});
+    Eigen::VectorXd signal = of_degree(2, 20.0);
+    for (const auto& [periods, sigmas] : {std::pair{weak, 9.0}, std::pair{strong, 15.0}}) {
+      signal += sigmas * tone().shape({grid(samples), {}}, periods).col(0);
+    }
+    const Recorded seen(signal);
+    std::vector<LineDomain::Trial> trials = {domain.nominal(seen.train)};
+    for (const auto& [c, start] : {std::pair{degree_2, LineDomain::Start{}}, {of_tone, {weak}}}) {
+      trials.push_back(domain.extend(trials.back(), c, start, seen.train, {}));
+    }
+    weigh_with_held_out(domain, seen.train, seen.held, 1, trials);
+    return trials[by_evidence(trials).front()].searched.back();
+  };
+  EXPECT_EQ(found(false), strong);
+  EXPECT_EQ(found(true), weak);  // the mutant is not searched again
+}
+
 Explanation scored(double log_evidence, const char* objection = "") {
   Explanation e;
   e.log_evidence = log_evidence;
