@@ -343,16 +343,18 @@ RestoringLaw law_of_periods(const AxisReadings& read) {
 }  // namespace
 
 size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
-  constexpr double usual = 3.0;
+  constexpr double usual = 3.0, held = 4.5;
   const LocalMotion local = motion_of(swing_of(rows, axis, first, last));
   if (local.row.empty()) return first;
   const Eigen::VectorXd off = scaled_residuals(local.motion);
   int lawful = 0;
+  double largest = 0.0;
   for (size_t i = 0; i < local.row.size() / 4; ++i) {
-    lawful = std::abs(off[static_cast<Eigen::Index>(i)]) < usual ? lawful + 1 : 0;
+    const double size = std::abs(off[static_cast<Eigen::Index>(i)]);
+    largest = std::max(largest, size);
+    lawful = size < usual ? lawful + 1 : 0;
     if (lawful < steps_per_period / 4) continue;
-    const size_t begins = i + 1 - steps_per_period / 4;
-    return begins == 0 ? first : local.row[begins];
+    return largest < held ? first : local.row[i + 1 - steps_per_period / 4];
   }
   return first;
 }

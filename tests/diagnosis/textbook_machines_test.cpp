@@ -16,6 +16,7 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 using testing::UnorderedElementsAre;
 
 std::string about(const std::string& axis, const std::string& noise) {
@@ -64,6 +65,24 @@ TEST(TextbookMachines, ATorsionPendulumInTwentyReadingsAPeriod) {
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("tether", "bearing_drag")) << d.sentence;
   expect_number(d, "tether", "stiffness_N_m_per_rad", 0, k);
   expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
+}
+
+// A pendulum that swings freely from the first row, with one wrong angle of six times the noise.
+TEST(TextbookMachines, AWrongAngleIsNotAHand) {
+  constexpr double interval_s = 0.0338, noise_rad = 0.003;
+  std::vector<double> angle_rad = Swing{14.6, 0.0, 0.05, 0.0}.from(1.44, interval_s, 300);
+  angle_rad[5] += 6.0 * noise_rad;
+  const auto notes = [&] {
+    return observe_segments(recording_of(interval_s, {noisy("angle_rad", angle_rad, noise_rad, 3)}),
+                            "swing.csv",
+                            machine(about("x", "angle]\nnoise_arcsec = 620")).model.platform)
+        .exclusions;
+  };
+  EXPECT_THAT(notes(), testing::Each(Not(HasSubstr("a hand holds it"))));
+  // A hand that slows it is one.
+  std::vector<double> held = {1.15, 1.16, 1.20, 1.28, 1.35, 1.39, 1.43};
+  angle_rad.insert(angle_rad.begin(), held.begin(), held.end());
+  EXPECT_THAT(notes(), Contains(HasSubstr("a hand holds it")));
 }
 
 // ω' = T − c ω from rest: ω = (T/c) (1 − e^(−c t)), with noise of a fiftieth of the final rate.
