@@ -203,6 +203,7 @@ struct Replay {
   double initial_charge_C = 0.0;                          // drawn from the battery
   // For a sliding platform: position and velocity along lab x and y.
   std::optional<std::array<double, 4>> initial_place_m_m_s = {};
+  double initial_turns = 0.0;  // whole turns about the only axis in addition to the attitude
 };
 
 // Finding about an instrument, for example noise that differs from the experiment's, or a clock

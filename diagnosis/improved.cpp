@@ -119,6 +119,7 @@ void add_replay(TomlDocument& document, const Replay& replay, const std::filesys
   set("duration_s", {replay.duration_s}, "%.9g");
   set("output_rate_Hz", {replay.output_rate_Hz}, "%.6g");
   set("initial_attitude", {q[0], q[1], q[2], q[3]}, "%.12g");
+  if (replay.initial_turns != 0.0) set("initial_turns", {replay.initial_turns}, "%.0f");
   set("initial_rate_rad_s", {w.x(), w.y(), w.z()}, "%.12g");
   if (replay.initial_time_s != 0.0) set("initial_time_s", {replay.initial_time_s}, "%.12g");
   if (const auto& place = replay.initial_place_m_m_s) {

@@ -9,16 +9,12 @@ namespace photorque {
 
 AxisReadings angles_about(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   AxisReadings read;
-  double angle_rad = 0.0;
+  const std::vector<double> angles_rad = rows.angles_rad(axis);
   for (size_t i = first; i < last; ++i) {
-    if (!(rows.attitude_rows[i] > 0.0)) continue;
-    angle_rad +=
-        read.row.empty()
-            ? axis.dot(turn_vector(rows.attitude[i]))
-            : axis.dot(turn_vector(rows.attitude[i] * rows.attitude[read.row.back()].conjugate()));
+    if (std::isnan(angles_rad[i])) continue;
     read.row.push_back(i);
     read.time_s.push_back(rows.time_s[i]);
-    read.value.push_back(angle_rad);
+    read.value.push_back(angles_rad[i]);
   }
   return read;
 }

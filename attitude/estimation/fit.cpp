@@ -265,8 +265,8 @@ size_t add_disturbance(Hypothesis& hypothesis, const Disturbance& disturbance) {
   hypothesis.model.disturbances.push_back(disturbance);
   for (RunStart& run : hypothesis.runs) {
     for (const ExtraState& state : disturbance.states) {
-      run.initial.extra.push_back(state.initial +
-                                  bound_axis(disturbance, state).dot(run.initial.rate_body_rad_s));
+      run.initial.extra.push_back(
+          initial_value(disturbance, state, run.initial.rate_body_rad_s, run.turned_rad));
     }
   }
   return hypothesis.model.disturbances.size() - 1;

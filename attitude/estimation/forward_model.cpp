@@ -101,8 +101,8 @@ bool determines_translation(const Observation& seen, int which) {
 // Initial conditions of a run. Quantities that no reading determines stay near their value by a
 // prior: 1 rad for rotations without attitude readings, 1e-9 for motion that a bearing prevents.
 std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
-                                                     const PlatformState& initial,
-                                                     const Observation& seen) {
+                                                     const RunStart& run, const Observation& seen) {
+  const PlatformState& initial = run.initial;
   constexpr double unseen_rad = 1.0, held = 1e-9;
   const char* axes[] = {"x", "y", "z"};
   const Platform& platform = model.platform;
@@ -135,7 +135,7 @@ std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
     result.push_back(p);
   }
   if (initial.extra.empty()) return result;
-  const PlatformState rest = Dynamics(model).initial_state(initial.rate_body_rad_s);
+  const PlatformState rest = Dynamics(model).initial_state(initial.rate_body_rad_s, run.turned_rad);
   const std::vector<int> places = places_among_extra(model);
   for (size_t k = 0; k < rest.extra.size(); ++k) {
     if (places[k] >= 0) {
@@ -199,7 +199,7 @@ inference::Parameters AttitudeForwardModel::parameters(const Eigen::VectorXd& at
   inference::Parameters result;
   for (size_t r = 0; r < h.runs.size(); ++r) {
     const RunStart& run = h.runs[r];
-    std::vector<inference::Parameter> own = initial_parameters(h.model, run.initial, runs_[r]);
+    std::vector<inference::Parameter> own = initial_parameters(h.model, run, runs_[r]);
     size_t k = 0;
     for (const Free& f : h.free) {
       if (f.per_run) own.push_back(parameter_of(h, f, run.own[k++]));

@@ -95,6 +95,15 @@ void put_place(const Observation& seen, double* place) {
   }
 }
 
+// Initial angle about the only axis, with whole turns; zero for other platforms. Without attitudes,
+// angle zero is the centre of the swing, which the rates alone determine.
+double first_angle_rad(const Platform& platform, const Observation& seen) {
+  if (seen.first_angle_rad) return *seen.first_angle_rad;
+  if (!platform.turns_about_one_axis() || platform.slides()) return 0.0;
+  const AxisReadings swing = angles_of_swing(seen, platform.axis);
+  return swing.value.empty() ? 0.0 : swing.value.front();
+}
+
 }  // namespace
 
 PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
@@ -114,19 +123,14 @@ PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
   const Platform& platform = model.platform;
   if (platform.turns_about_one_axis()) rate = platform.axis.dot(rate) * platform.axis;
   const Dynamics dynamics(model);
-  PlatformState state = dynamics.initial_state(rate);
+  PlatformState state = dynamics.initial_state(rate, first_angle_rad(platform, seen));
   if (const int place = dynamics.first_of_translation(); place >= 0) {
     put_place(seen, &state.extra[static_cast<size_t>(place - component::extra)]);
   }
   state.time_s = seen.time_s.front();
   state.charge_drawn_C = seen.initial_charge_C;
   if (first == seen.blocks()) {
-    // Without attitudes, angle zero is the centre of the swing, which the rates alone determine.
-    if (!platform.turns_about_one_axis() || platform.slides()) return state;
-    const AxisReadings swing = angles_of_swing(seen, platform.axis);
-    if (!swing.value.empty()) {
-      state.lab_from_body = Eigen::AngleAxisd(swing.value.front(), platform.axis);
-    }
+    state.lab_from_body = Eigen::AngleAxisd(first_angle_rad(platform, seen), platform.axis);
     return state;
   }
   const double back_s = seen.time_s.front() - seen.time_s[first];
@@ -140,7 +144,9 @@ std::vector<RunStart> starts_from_data(const Hypothesis& h, const std::vector<Ob
     if (f.per_run) own.push_back(f.mean);
   }
   std::vector<RunStart> starts;
-  for (const Observation& seen : runs) starts.push_back({first_state(h.model, seen), own});
+  for (const Observation& seen : runs) {
+    starts.push_back({first_state(h.model, seen), own, first_angle_rad(h.model.platform, seen)});
+  }
   return starts;
 }
 

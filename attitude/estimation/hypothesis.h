@@ -27,6 +27,7 @@ struct Free {
 struct RunStart {
   PlatformState initial;
   std::vector<double> own;  // values of the per-run parameters, in the order of Hypothesis::free
+  double turned_rad = 0.0;  // initial angle about the only axis, with whole turns
 };
 
 // A free parameter that all runs share.

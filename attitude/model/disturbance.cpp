@@ -45,6 +45,12 @@ Vec3 bound_axis(const Disturbance& disturbance, const ExtraState& state) {
   return vector_at(disturbance.parameters, static_cast<size_t>(first)).normalized();
 }
 
+double initial_value(const Disturbance& disturbance, const ExtraState& state,
+                     const Vec3& rate_body_rad_s, double turned_rad) {
+  return state.initial + bound_axis(disturbance, state).dot(rate_body_rad_s) +
+         (state.is_turned_angle ? turned_rad : 0.0);
+}
+
 double bound_rate_slope(const Disturbance& disturbance, const ExtraState& state, int parameter,
                         const Vec3& rate_body_rad_s) {
   const int first = first_of_axis(disturbance), component = parameter - first;

@@ -165,6 +165,8 @@ struct ExtraState {
   Vec3 per_body_rate = Vec3::Zero();
   // Key of an experiment file for `initial`, in the key's unit; empty: none.
   std::string key = {};
+  // Whether the angle about the only axis at the start, with whole turns, is added to `initial`.
+  bool is_turned_angle = false;
 };
 
 // A key of a law, and the position of its numbers among the law's parameters. A law declares its
@@ -422,6 +424,10 @@ T active_from(const T& time_s, double start_s) {
 // disturbance or, without one, ExtraState::per_body_rate. Zero: the state starts at
 // ExtraState::initial.
 Vec3 bound_axis(const Disturbance& disturbance, const ExtraState& state);
+// The initial value of a state of a platform that starts at this rate and angle about its only
+// axis.
+double initial_value(const Disturbance& disturbance, const ExtraState& state,
+                     const Vec3& rate_body_rad_s, double turned_rad);
 
 // Derivative of (bound_axis · rate) with respect to a parameter of the disturbance [(rad/s) per the
 // parameter's SI unit].

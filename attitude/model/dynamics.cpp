@@ -134,12 +134,12 @@ Dynamics::Offsets Dynamics::tried(const PlatformState& state,
   return offsets;
 }
 
-PlatformState Dynamics::initial_state(const Vec3& rate_body_rad_s) const {
+PlatformState Dynamics::initial_state(const Vec3& rate_body_rad_s, double turned_rad) const {
   PlatformState state;
   state.rate_body_rad_s = rate_body_rad_s;
   for (const Disturbance& d : model_.disturbances) {
     for (const ExtraState& extra : d.states) {
-      state.extra.push_back(extra.initial + bound_axis(d, extra).dot(rate_body_rad_s));
+      state.extra.push_back(initial_value(d, extra, rate_body_rad_s, turned_rad));
     }
   }
   return state;

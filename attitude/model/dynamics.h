@@ -70,8 +70,9 @@ class Dynamics {
   int first_of_translation() const { return translation_; }
 
   // State at zero attitude that turns at this rate as one rigid body, with the extra states at
-  // their initial values.
-  PlatformState initial_state(const Vec3& rate_body_rad_s = Vec3::Zero()) const;
+  // their initial values for the angle `turned_rad` about the only axis.
+  PlatformState initial_state(const Vec3& rate_body_rad_s = Vec3::Zero(),
+                              double turned_rad = 0.0) const;
 
   // dy/dt at eight instants; `y` and `rates` hold size() components.
   void rates(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y, Lanes* rates) const;

@@ -7,6 +7,7 @@
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/median.h"
 
 namespace photorque {
 namespace {
@@ -158,6 +159,21 @@ size_t Observation::readings(size_t first, size_t last) const {
   return count;
 }
 
+std::vector<double> Observation::angles_rad(const Vec3& axis) const {
+  std::vector<double> angles_rad(blocks(), NAN);
+  double angle_rad = 0.0;
+  const Quat* before = nullptr;
+  for (size_t i = 0; i < blocks(); ++i) {
+    if (!(attitude_rows[i] > 0.0)) continue;
+    angle_rad = before != nullptr
+                    ? angle_rad + axis.dot(turn_vector(attitude[i] * before->conjugate()))
+                    : first_angle_rad.value_or(axis.dot(turn_vector(attitude[i])));
+    before = &attitude[i];
+    angles_rad[i] = angle_rad;
+  }
+  return angles_rad;
+}
+
 Observation observe(const Recording& recording, const std::string& name, const Platform& platform,
                     size_t max_blocks) {
   const MotionColumns columns(recording, platform, name);
@@ -204,6 +220,15 @@ Observation observe(const Recording& recording, const std::string& name, const P
                                      : ""),
                      "at least " + std::to_string(fewest_readings) +
                          (columns.has_attitude() ? ", quaternions of unit norm" : ""));
+  }
+  if (platform.turns_about_one_axis()) {
+    seen.only_axis = platform.axis;
+    std::vector<double> angles_rad = seen.angles_rad(platform.axis);
+    std::erase_if(angles_rad, [](double angle) { return std::isnan(angle); });
+    if (!angles_rad.empty()) {
+      const double turns = std::round(upper_median(angles_rad) / (2.0 * pi));
+      seen.first_angle_rad = angles_rad.front() - 2.0 * pi * turns;
+    }
   }
   return seen.averaged(max_blocks);
 }
@@ -253,6 +278,12 @@ Observation Observation::part(size_t first, size_t last) const {
     if (scalar[s].rows.empty()) continue;
     cut(result.scalar[s].value, scalar[s].value);
     cut(result.scalar[s].rows, scalar[s].rows);
+  }
+  if (first_angle_rad) {
+    const std::vector<double> angles = angles_rad(only_axis);
+    const auto from = std::find_if(angles.begin() + static_cast<std::ptrdiff_t>(first),
+                                   angles.end(), [](double angle) { return !std::isnan(angle); });
+    if (from != angles.end()) result.first_angle_rad = *from;
   }
   if (result.spread_of(0).readings_s > 0.0) correct_first_block(*this, first, result);
   const double start_s = result.time_s.front();

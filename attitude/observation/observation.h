@@ -74,6 +74,10 @@ struct Observation {
   double initial_charge_C = 0.0;  // drawn before the first row
   bool has_gyro = false;
   bool is_piece = false;  // a segment of a recording that was cut for the search
+  // Of a platform with one axis: it, and the angle about it at the first attitude. Whole turns are
+  // counted so that the middle angle of the recording is within half a turn of zero.
+  Vec3 only_axis = Vec3::Zero();
+  std::optional<double> first_angle_rad = {};
   // Lab axes about which the attitude was measured; none: there is no attitude.
   std::array<bool, 3> sees_axis = {true, true, true};
 
@@ -124,6 +128,9 @@ struct Observation {
   // Number of blocks with a reading in [first, last): of an attitude or, if there is none, of a
   // rate or scalar.
   size_t readings(size_t first, size_t last) const;
+  // Angles about an axis with whole turns counted, one per block; NaN: it has no attitude. The
+  // first is `first_angle_rad`, if known, or else within half a turn of zero.
+  std::vector<double> angles_rad(const Vec3& axis) const;
   double duration_s() const { return time_s.back() - time_s.front(); }
   // The blocks [first, last), with the charge drawn before them. If the first block is a mean, it
   // is converted to a reading at its centre, as far as its neighbours permit.

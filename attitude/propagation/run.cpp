@@ -56,6 +56,9 @@ constexpr NumbersKey initial_position("initial_position_m", {},
 constexpr NumbersKey initial_velocity("initial_velocity_m_s", {},
                                       "velocity of a planar platform at the start, lab x and y",
                                       {.usually = "0, 0", .size = 2});
+constexpr IntegerKey initial_turns("initial_turns", 0, -1'000'000, 1'000'000,
+                                   "whole turns about the only axis before the start, which a "
+                                   "twisted line counts");
 constexpr NumberKey initial_charge("initial_charge_Ah", 0.0, {},
                                    "charge drawn from the battery before the start");
 constexpr NumberKey initial_time(
@@ -256,7 +259,11 @@ Quat read_initial_attitude(const Settings& settings, const std::optional<Attitud
 // start.
 void check_begins_about_axis(const Settings& settings, const Platform& platform,
                              const Quat& lab_from_body, const Vec3& rate_rad_s) {
-  if (!platform.turns_about_one_axis()) return;
+  if (!platform.turns_about_one_axis()) {
+    if (!settings.has(propagate_key::initial_turns)) return;
+    throw settings.error(propagate_key::initial_turns, "a platform with several axes",
+                         "topology = \"one_axis\" or no whole turns");
+  }
   const auto beside = [&](const Vec3& v) {
     return (v - platform.axis.dot(v) * platform.axis).norm();
   };
@@ -415,8 +422,12 @@ PropagationRun read_propagation(const Settings& root) {
   if (apm && apm->rate_body_rad_s && !settings.has(propagate_key::initial_rate)) {
     rate_body_rad_s = *apm->rate_body_rad_s;
   }
-  run.initial = Dynamics(run.model).initial_state(rate_body_rad_s);
-  run.initial.lab_from_body = read_initial_attitude(settings, apm);
+  const Quat attitude = read_initial_attitude(settings, apm);
+  const double angle_rad = run.model.platform.axis.dot(turn_vector(attitude)),
+               turns_rad =
+                   2.0 * pi * static_cast<double>(settings.get(propagate_key::initial_turns));
+  run.initial = Dynamics(run.model).initial_state(rate_body_rad_s, angle_rad + turns_rad);
+  run.initial.lab_from_body = attitude;
   check_begins_about_axis(settings, run.model.platform, run.initial.lab_from_body,
                           run.initial.rate_body_rad_s);
   read_initial_place(settings, run.model, run.initial);
@@ -482,6 +493,7 @@ Key propagate_table() {
        initial_tilt,
        initial_heading,
        initial_yaw,
+       initial_turns,
        initial_attitude,
        initial_rate,
        initial_apm,

@@ -68,7 +68,8 @@ Curve curve_of(const Observation& seen, const Vec3& axis) {
 }
 
 PlatformState state_at(const AttitudeModel& model, const Curve& curve, size_t i) {
-  PlatformState state = Dynamics(model).initial_state(curve.rate_rad_s[i] * model.platform.axis);
+  PlatformState state =
+      Dynamics(model).initial_state(curve.rate_rad_s[i] * model.platform.axis, curve.angle_rad[i]);
   state.time_s = curve.time_s[i];
   state.lab_from_body = Eigen::AngleAxisd(curve.angle_rad[i], model.platform.axis);
   return state;

@@ -170,6 +170,28 @@ TEST(Experiment, BeginsAtTheStatedHeadingAndYaw) {
               HasSubstr("propagate.initial_yaw_deg"));
 }
 
+// θ = θ₀ cos √(k/J) t of a twisted line from a turn and 60 degrees, for a third of a period.
+TEST(Experiment, BeginsAfterWholeTurns) {
+  SettingsNode root = experiment();
+  at(root, "platform", "topology") = node("one_axis");
+  at(root, "platform", "inertia_kg_m2") = node(0.05);
+  std::get<SettingsNode::Table>(root.value)["disturbance"] =
+      list({table({{"kind", node("tether")}, {"stiffness_N_m_per_rad", node(0.02)}})});
+  at(root, "propagate", "initial_tilt_deg") = node(0.0);
+  at(root, "propagate", "initial_rate_rad_s") = numbers({0, 0, 0});
+  at(root, "propagate", "initial_yaw_deg") = node(60.0);
+  at(root, "propagate", "initial_turns") = node(1);
+  at(root, "propagate", "duration_s") = node(2.0 * pi / 3.0 * std::sqrt(0.05 / 0.02));
+  PropagationRun run = read_propagation(settings_of(root));
+  run.options.tolerance = 1e-11;
+  const PlatformState end = propagate(run).states.back();
+  const double angle_rad = 420.0 * degree_rad * std::cos(std::sqrt(0.02 / 0.05) * end.time_s);
+  EXPECT_LT(angle_rad, -pi);
+  EXPECT_NEAR(std::remainder(yaw_rad(end) - angle_rad, 2.0 * pi), 0.0, 1e-7);
+  EXPECT_THAT(complaint([](SettingsNode& r) { at(r, "propagate", "initial_turns") = node(1); }),
+              HasSubstr("propagate.initial_turns: found a platform with several axes"));
+}
+
 // A row has up to 220 bytes, 40 of them for time and quaternion. A run has at most 45,000 rows,
 // that is 10 MB.
 TEST(Experiment, LongRunsHaveFewerRows) {

@@ -85,6 +85,27 @@ TEST(TextbookMachines, AWrongAngleIsNotAHand) {
   EXPECT_THAT(notes(), Contains(HasSubstr("a hand holds it")));
 }
 
+// θ'' = −k θ − c θ' from 4.2 rad, beyond half a turn, and from −3.7 rad after a gap.
+TEST(TextbookMachines, ATorsionPendulumBeyondHalfATurn) {
+  constexpr double k = 20.0, c = 0.25, interval_s = 0.05;
+  const DampedSwing swing{k, c};
+  const auto recorded = [&](double from_rad, uint64_t seed) {
+    return NamedRecording{
+        "run" + std::to_string(seed) + ".csv",
+        recording_of(interval_s, {noisy("angle_rad",
+                                        sampled(interval_s, 90,
+                                                [&](double t) { return from_rad * swing.at(t); }),
+                                        0.004, seed)})};
+  };
+  const Diagnosis d = diagnose(machine(about("z", "angle]\nnoise_arcsec = 825")),
+                               {recorded(4.2, 6), recorded(-3.7, 7)}, {recorded(3.9, 8)});
+  EXPECT_THAT(kinds_of(d), UnorderedElementsAre("tether", "bearing_drag")) << d.sentence;
+  expect_number(d, "tether", "stiffness_N_m_per_rad", 0, k);
+  expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
+  ASSERT_TRUE(d.replay);
+  EXPECT_EQ(d.replay->initial_turns, 1.0);
+}
+
 // ω' = T − c ω from rest: ω = (T/c) (1 − e^(−c t)), with noise of a fiftieth of the final rate.
 TEST(TextbookMachines, AFlywheelThatAMotorSpinsUp) {
   constexpr double torque = 208.0, c = 0.76, interval_s = 0.02, noise_rad_s = 4.9;

@@ -32,8 +32,8 @@ constexpr FlagKey winds_up(
     "winds_up", false,
     "true: whole turns about body z count, φ + 2π n z; about one axis they always do");
 }  // namespace key
-// The angle about body z since the start. It only determines the number of whole turns, so its
-// accuracy is not important.
+// The angle about body z since the start, or the angle about the only axis. It only determines the
+// number of whole turns, so its accuracy is not important.
 constexpr StateKey twist{"tether_twist_rad"};
 
 // Derivative of the twist angle t about body z in attitude = swing · twist, tan(t/2) = q_z/q_w.
@@ -95,8 +95,9 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
              winds_up = settings.get(key::winds_up) || about_one_axis;
   Disturbance d = make_disturbance<Tether>(
       {scalar_parameter(settings, stiffness), parameters_of(settings, pull)}, Stage::torque,
-      winds_up ? std::vector<ExtraState>{{twist.name}} : std::vector<ExtraState>{}, winds_up,
-      about_one_axis);
+      winds_up ? std::vector<ExtraState>{{.name = twist.name, .is_turned_angle = about_one_axis}}
+               : std::vector<ExtraState>{},
+      winds_up, about_one_axis);
   d.is_abrupt = !about_one_axis;
   return d;
 }
