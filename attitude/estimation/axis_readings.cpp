@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constants.h"
 #include "core/numerics/linear.h"
 
 namespace photorque {
@@ -41,6 +42,25 @@ AxisReadings rates_about(const Observation& rows, const Vec3& axis, size_t first
     read.value.push_back(rows.gyro_rad_s[i][along]);
   }
   return read;
+}
+
+bool turns_little(const std::vector<Observation>& runs, const Vec3& axis) {
+  constexpr double most_rad = 30.0 * 2.0 * pi;
+  return std::ranges::all_of(runs, [&](const Observation& seen) {
+    const std::vector<double> angle_rad = angles_about(seen, axis, 0, seen.blocks()).value;
+    if (!angle_rad.empty()) {
+      const auto [least, most] = std::ranges::minmax_element(angle_rad);
+      return *most - *least < most_rad;
+    }
+    double sum_rad_s = 0.0, count = 0.0;
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      const std::optional<double> along_rad_s = rate_along(seen, i, axis);
+      if (!along_rad_s) continue;
+      sum_rad_s += std::abs(*along_rad_s);
+      count += 1.0;
+    }
+    return count > 0.0 && sum_rad_s / count * seen.duration_s() < most_rad;
+  });
 }
 
 Eigen::Vector4d fitted_cubic(const AxisReadings& read, size_t first, size_t last, double at_s,

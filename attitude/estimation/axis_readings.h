@@ -22,6 +22,10 @@ std::optional<double> rate_along(const Observation& rows, size_t row, const Vec3
 // Rates in the rows [first, last).
 AxisReadings rates_about(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 
+// Whether the body turns less in every run than a suspension line can be twisted: the range of its
+// angles or, of rates alone, their mean size times the duration.
+bool turns_little(const std::vector<Observation>& runs, const Vec3& axis);
+
 // Coefficients of the cubic of (t − at_s)/unit_s that is fitted to the readings [first, last) minus
 // `origin`.
 Eigen::Vector4d fitted_cubic(const AxisReadings& read, size_t first, size_t last, double at_s,

@@ -262,6 +262,10 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
                               Among::unscanned, nullptr);
   described.rest_is_noise = true;
   leave_unexplained(described.decision);
+  // A law that cannot be propagated with the noise of the readings describes nothing.
+  if (!std::isfinite(propagate_model(described.chosen().fit, data.train, limits).chi2)) {
+    described.decision.chosen = 0;
+  }
   return described;
 }
 

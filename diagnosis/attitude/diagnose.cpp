@@ -143,21 +143,6 @@ void warn_of_weak_holdout(Diagnosis& d) {
   }
 }
 
-// Whether the body turns less in every run than a suspension line can be twisted.
-bool turns_little(const std::vector<Observation>& runs, const Vec3& axis) {
-  constexpr double most_rad = 30.0 * 2.0 * pi;
-  return std::ranges::all_of(runs, [&](const Observation& seen) {
-    double sum_rad_s = 0.0, count = 0.0;
-    for (size_t i = 0; i < seen.blocks(); ++i) {
-      const std::optional<double> along_rad_s = rate_along(seen, i, axis);
-      if (!along_rad_s) continue;
-      sum_rad_s += std::abs(*along_rad_s);
-      count += 1.0;
-    }
-    return count > 0.0 && sum_rad_s / count * seen.duration_s() < most_rad;
-  });
-}
-
 // Omits the attitude from the state if no instrument measures it and no effect depends on it.
 NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   NominalModel nominal = stated;

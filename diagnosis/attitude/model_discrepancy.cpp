@@ -362,9 +362,10 @@ void decide_with_discrepancy(Answer& a) {
 bool is_of_textbook(const Candidates& all) {
   return std::ranges::none_of(all.list, [](const Candidate& c) {
     const Requirement needs = c.effect.how.needs;
+    const bool is_special = c.effect.how.of_experiment != nullptr && needs != Requirement::bearing;
     return needs == Requirement::command || needs == Requirement::charge ||
            needs == Requirement::field || needs == Requirement::wheel ||
-           needs == Requirement::lamps || c.effect.how.of_experiment != nullptr;
+           needs == Requirement::lamps || is_special;
   });
 }
 

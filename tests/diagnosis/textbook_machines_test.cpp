@@ -106,6 +106,21 @@ TEST(TextbookMachines, ATorsionPendulumBeyondHalfATurn) {
   EXPECT_EQ(d.replay->initial_turns, 1.0);
 }
 
+// ω' = −d − c ω: θ = (ω₀ + d/c) (1 − e^(−c t))/c − d t/c of a rotor, by an encoder whose scatter is
+// larger than stated. It turns so little that a suspension line could be twisted.
+TEST(TextbookMachines, ARotorOfFewTurnsBesideAResidual) {
+  constexpr double c = 3.4, dry = 1100.0, first_rad_s = 1290.0, interval_s = 5e-4;
+  const std::vector<double> angle_rad = sampled(interval_s, 460, [](double t) {
+    return (first_rad_s + dry / c) * (1.0 - std::exp(-c * t)) / c - dry * t / c;
+  });
+  for (uint64_t seed = 1; seed <= 3; ++seed) {
+    const Diagnosis d = diagnosed(machine(about("z", "angle]\nnoise_arcsec = 5870")), interval_s,
+                                  {noisy("angle_rad", angle_rad, 0.04, seed)});
+    EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "bearing_drag")) << d.sentence;
+    expect_number(d, "dry_friction", "torque_N_m", 0, dry);
+  }
+}
+
 // ω' = T − c ω from rest: ω = (T/c) (1 − e^(−c t)), with noise of a fiftieth of the final rate.
 TEST(TextbookMachines, AFlywheelThatAMotorSpinsUp) {
   constexpr double torque = 208.0, c = 0.76, interval_s = 0.02, noise_rad_s = 4.9;

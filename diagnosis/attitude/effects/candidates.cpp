@@ -513,13 +513,15 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     std::erase_if(all.list,
                   [&](const Candidate& c) { return c.variable == (is_level ? "yaw" : "tilt"); });
     // About a level axis a weight exerts a restoring torque, and a twisted line a nearly equal one.
-    // A sliding body has no known line.
+    // A sliding body has no known line, and one that only slows down or turns often hangs on none.
     const bool has_weight =
         context.platform.slides() || std::ranges::any_of(all.list, [&](const Candidate& c) {
           return c.effect.how.needs == Requirement::gravity && is_restoring(c, nominal.model);
         });
+    const Vec3& axis = context.platform.axis;
+    const bool has_line = !has_weight && turns_little(runs, axis) && !only_slows_down(runs, axis);
     std::erase_if(all.list, [&](const Candidate& c) {
-      return has_weight && c.effect.how.needs == Requirement::bearing &&
+      return !has_line && c.effect.how.needs == Requirement::bearing &&
              is_restoring(c, nominal.model);
     });
     const bool sees_angle =
