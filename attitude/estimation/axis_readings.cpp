@@ -44,8 +44,8 @@ AxisReadings rates_about(const Observation& rows, const Vec3& axis, size_t first
   return read;
 }
 
-bool turns_little(const std::vector<Observation>& runs, const Vec3& axis) {
-  constexpr double most_rad = 30.0 * 2.0 * pi;
+bool turns_less(const std::vector<Observation>& runs, const Vec3& axis, double turns) {
+  const double most_rad = turns * 2.0 * pi;
   return std::ranges::all_of(runs, [&](const Observation& seen) {
     const std::vector<double> angle_rad = angles_about(seen, axis, 0, seen.blocks()).value;
     if (!angle_rad.empty()) {

@@ -22,9 +22,11 @@ std::optional<double> rate_along(const Observation& rows, size_t row, const Vec3
 // Rates in the rows [first, last).
 AxisReadings rates_about(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 
-// Whether the body turns less in every run than a suspension line can be twisted: the range of its
-// angles or, of rates alone, their mean size times the duration.
-bool turns_little(const std::vector<Observation>& runs, const Vec3& axis);
+// Whether the body turns less than this in every run: the range of its angles or, of rates alone,
+// their mean size times the duration.
+bool turns_less(const std::vector<Observation>& runs, const Vec3& axis, double turns);
+// Largest number of turns by which a suspension line is twisted.
+constexpr double most_turns_of_line = 30.0;
 
 // Coefficients of the cubic of (t − at_s)/unit_s that is fitted to the readings [first, last) minus
 // `origin`.

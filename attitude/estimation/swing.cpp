@@ -229,7 +229,7 @@ AxisReadings angles_of_swing(const Observation& rows, const Vec3& axis) {
 
 bool swings(const std::vector<Observation>& runs, const Vec3& axis) {
   constexpr double beyond = 0.2;
-  constexpr int fewest = 4;
+  constexpr int fewest = 3;
   std::vector<double> angle_rad;
   for (const Observation& seen : runs) {
     if (!seen.has_some_attitude() && !angles_of_swing(seen, axis).row.empty()) return true;

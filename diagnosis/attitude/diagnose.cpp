@@ -153,8 +153,8 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   // A twisted line or a weight exerts a restoring torque that depends on the angle, so rates alone
   // determine the angle.
   const bool turns_alone = platform.turns_about_one_axis() && !platform.slides();
-  const bool may_twist =
-      turns_alone && std::abs(platform.axis.z()) > 0.5 && turns_little(data.train, platform.axis);
+  const bool may_twist = turns_alone && std::abs(platform.axis.z()) > 0.5 &&
+                         turns_less(data.train, platform.axis, most_turns_of_line);
   const bool may_swing =
       turns_alone && std::ranges::any_of(data.train, [&](const Observation& seen) {
         return !angles_of_swing(seen, platform.axis).row.empty();

@@ -178,7 +178,9 @@ class Contest {
   // improvement is multiplied by 1.8, so 1.67 standard errors count as three.
   double missed(const Contender& without, const Contender& with) const {
     constexpr double by_chance = 3.0, confirmed = 1.8;
-    const double scatter = std::sqrt(2.0 * with.held_samples);
+    // A residual beyond the noise scatters in proportion to its size.
+    const double excess = std::max(1.0, without.held_chi2 / without.held_samples),
+                 scatter = excess * std::sqrt(2.0 * with.held_samples);
     if (with.held_chi2 > limits_.max_held_growth * without.held_chi2 + by_chance * scatter) {
       return 0.0;
     }

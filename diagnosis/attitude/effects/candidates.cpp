@@ -513,19 +513,21 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     std::erase_if(all.list,
                   [&](const Candidate& c) { return c.variable == (is_level ? "yaw" : "tilt"); });
     // About a level axis a weight exerts a restoring torque, and a twisted line a nearly equal one.
-    // A sliding body has no known line, and one that only slows down or turns often hangs on none.
+    // A sliding body has no known line. One that turns often hangs on none, nor one whose angles
+    // show that it only slows down, over more than a turn.
     const bool has_weight =
         context.platform.slides() || std::ranges::any_of(all.list, [&](const Candidate& c) {
           return c.effect.how.needs == Requirement::gravity && is_restoring(c, nominal.model);
         });
+    const bool sees_angle =
+        std::ranges::any_of(runs, [](const Observation& seen) { return seen.has_some_attitude(); });
     const Vec3& axis = context.platform.axis;
-    const bool has_line = !has_weight && turns_little(runs, axis) && !only_slows_down(runs, axis);
+    const bool coasts = sees_angle && !turns_less(runs, axis, 1.0) && only_slows_down(runs, axis);
+    const bool has_line = !has_weight && !coasts && turns_less(runs, axis, most_turns_of_line);
     std::erase_if(all.list, [&](const Candidate& c) {
       return !has_line && c.effect.how.needs == Requirement::bearing &&
              is_restoring(c, nominal.model);
     });
-    const bool sees_angle =
-        std::ranges::any_of(runs, [](const Observation& seen) { return seen.has_some_attitude(); });
     const bool swings_freely = !covered.has_commands && swings(runs, context.platform.axis);
     if ((!sees_angle || (!is_level && !swings_freely)) && !context.platform.slides()) {
       for (Candidate& c : all.list) set_zero_at_rest(nominal.model, c);
