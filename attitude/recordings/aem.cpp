@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "attitude/environment/epoch.h"
+#include "attitude/recordings/frames.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -94,6 +96,7 @@ class AemReader : MessageFile {
  private:
   Segment read_segment(const KvnItem& meta, const KvnItem& data) const {
     Segment segment;
+    segment.line = meta.line;
     for (const Keyword& keyword : keywords) {
       const KvnItem* item =
           keyword.required ? &required(meta, {keyword.name}) : meta.find({keyword.name});
@@ -109,6 +112,10 @@ class AemReader : MessageFile {
     if (message.find({"CCSDS_AEM_VERS"})->value.starts_with("1")) required(meta, {"ATTITUDE_DIR"});
     if (segment.attitude_dir != "A2B" && segment.attitude_dir != "B2A") {
       throw error(meta, "", segment.attitude_dir, "ATTITUDE_DIR = A2B or B2A");
+    }
+    const KvnItem* scalar = meta.find({"QUATERNION_TYPE"});
+    if (scalar != nullptr && scalar->value != "FIRST" && scalar->value != "LAST") {
+      throw error(*scalar, scalar->key, in_quotes(scalar->value), "FIRST or LAST");
     }
     const AttitudeType* type = type_of(segment);
     for (const KvnItem& item : data.items) {
@@ -157,6 +164,10 @@ Epoch epoch_of(const std::string& text, const InputLocation& where) {
   return *epoch;
 }
 
+FramePair frames_of(const Segment& segment, const std::filesystem::path& file) {
+  return {segment.ref_frame_a, segment.ref_frame_b, {file.string(), segment.line}};
+}
+
 }  // namespace
 
 std::vector<Segment::Sample> Segment::attitudes(const std::filesystem::path& file) const {
@@ -166,6 +177,8 @@ std::vector<Segment::Sample> Segment::attitudes(const std::filesystem::path& fil
                      "QUATERNION or EULER_ANGLE, or one of them with /DERIVATIVE, /RATE or "
                      "/ANGVEL");
   }
+  const bool is_rate_in_a = type->ends_in_rate && are_axes_of_a(angvel_frame, ref_frame_a,
+                                                                ref_frame_b, {file.string(), line});
   std::vector<Sample> samples;
   std::optional<Epoch> first;
   for (const Row& row : rows) {
@@ -178,8 +191,7 @@ std::vector<Segment::Sample> Segment::attitudes(const std::filesystem::path& fil
     if (!type->ends_in_rate) continue;
     const double* rate = row.values.data() + row.values.size() - 3;
     const Vec3 rate_rad_s = degree_rad * Vec3(rate[0], rate[1], rate[2]);
-    const bool is_in_a = angvel_frame == ref_frame_a && ref_frame_a != ref_frame_b;
-    samples.back().rate_rad_s = is_in_a ? Vec3(q.conjugate() * rate_rad_s) : rate_rad_s;
+    samples.back().rate_rad_s = is_rate_in_a ? Vec3(q.conjugate() * rate_rad_s) : rate_rad_s;
   }
   return samples;
 }
@@ -190,23 +202,22 @@ std::vector<AemAttitude> aem_attitudes(const std::filesystem::path& path) {
   std::vector<AemAttitude> all;
   std::optional<Epoch> begin;
   for (const Segment& segment : aem.segments) {
-    if (segment.object_name != first.object_name) {
-      throw InputError({path.string()}, "OBJECT_NAME",
+    if (kvn_word(segment.object_name) != kvn_word(first.object_name)) {
+      throw InputError({path.string(), segment.line}, "OBJECT_NAME",
                        in_quotes(segment.object_name) + " after " + in_quotes(first.object_name),
                        "segments of one object");
     }
-    const bool is_from_lab =
-        is_body_frame(segment.ref_frame_a) && !is_body_frame(segment.ref_frame_b);
+    const bool is_from_body = frames_of(segment, path).is_from_body;
     const std::vector<Segment::Sample> samples = segment.attitudes(path);
     for (size_t i = 0; i < samples.size(); ++i) {
       const Epoch epoch = *parse_epoch(segment.rows[i].epoch);
       if (!begin) begin = epoch;
       const Quat& q = samples[i].a_from_b;
-      AemAttitude attitude{epoch.seconds_since(*begin), is_from_lab ? Quat(q.conjugate()) : q,
+      AemAttitude attitude{epoch.seconds_since(*begin), is_from_body ? Quat(q.conjugate()) : q,
                            samples[i].rate_rad_s, segment.rows[i].line};
       // A is the body. Its rate is minus that of the lab B, converted from the axes of B to those
       // of A.
-      if (is_from_lab && attitude.rate_body_rad_s) {
+      if (is_from_body && attitude.rate_body_rad_s) {
         attitude.rate_body_rad_s = -(q * *attitude.rate_body_rad_s);
       }
       all.push_back(attitude);
@@ -215,8 +226,19 @@ std::vector<AemAttitude> aem_attitudes(const std::filesystem::path& path) {
   return all;
 }
 
+bool is_aem(const std::filesystem::path& path) {
+  const std::vector<std::string> kinds = kinds_of_messages(path);
+  if (kinds.empty() || std::ranges::find(kinds, "AEM") != kinds.end()) return !kinds.empty();
+  throw InputError({path.string()}, "", "a CCSDS message " + joined_text(kinds, ", "),
+                   "a recording: of CCSDS messages an attitude ephemeris (AEM)");
+}
+
+bool is_in_space(const std::filesystem::path& path) {
+  return is_aem(path) && !frames_of(read_aem(path).segments.front(), path).lab().starts_with("LAB");
+}
+
 AttitudeEphemeris read_aem(const std::filesystem::path& path) {
-  return AemReader(path).read();
+  return AemReader(path, "AEM").read();
 }
 
 KvnItem to_kvn(const AttitudeEphemeris& aem) {

@@ -40,6 +40,7 @@ struct AttitudeEphemeris {
     std::string rate_frame, angvel_frame;               // of rates: version 1, version 2
     std::string interpolation_method, interpolation_degree;
     std::vector<std::string> comments;
+    int line = 0;  // of the metadata in the file
     std::vector<Row> rows;
 
     struct Sample {
@@ -49,7 +50,8 @@ struct AttitudeEphemeris {
       std::optional<Vec3> rate_rad_s = {};
     };
     // The rows as attitudes. InputError, with the name of the file, for an unknown type, an epoch
-    // that is no calendar time, or a quaternion whose norm differs from one by more than 1 %.
+    // that is no calendar time, a quaternion whose norm differs from one by more than 1 %, or an
+    // angular velocity in axes other than those of A or B.
     std::vector<Sample> attitudes(const std::filesystem::path& file = {}) const;
   };
   std::string version = "1.0";
@@ -61,15 +63,21 @@ struct AttitudeEphemeris {
 // The attitude of the body of a message as a function of the time since its first row.
 struct AemAttitude {
   double time_s;
-  Quat lab_from_body;  // lab: the frame that is not a body frame; A if both or none are
+  Quat lab_from_body;  // lab: the frame that is not a body frame
   std::optional<Vec3> rate_body_rad_s;
   int line;  // in the file
 };
-// The rows of all segments in their order. InputError as read_aem() and Segment::attitudes(), and
-// for segments of several objects.
+// The rows of all segments in their order. InputError as read_aem(), Segment::attitudes() and
+// FramePair, and for segments of several objects.
 std::vector<AemAttitude> aem_attitudes(const std::filesystem::path& path);
 
-// InputError for a file that is no AEM, lacks a required keyword, or has a row of the wrong length.
+// Whether a recording is an AEM. InputError for a CCSDS message of another kind.
+bool is_aem(const std::filesystem::path& path);
+// Whether a recording is an AEM whose attitude is relative to an inertial frame, not to a lab.
+bool is_in_space(const std::filesystem::path& path);
+
+// InputError for a file that is no AEM, lacks a required keyword, states a name that is unknown, or
+// has a row of the wrong length.
 AttitudeEphemeris read_aem(const std::filesystem::path& path);
 KvnItem to_kvn(const AttitudeEphemeris& aem);
 void write_aem(const std::filesystem::path& path, const AttitudeEphemeris& aem);

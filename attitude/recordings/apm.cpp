@@ -4,15 +4,20 @@
 #include <cmath>
 #include <string>
 
+#include "attitude/recordings/frames.h"
 #include "attitude/recordings/kvn.h"
-#include "attitude/recordings/oem.h"
 #include "core/constants.h"
 #include "core/text/parse.h"
 
 namespace photorque {
 namespace {
 
-using Names = std::initializer_list<std::string_view>;
+// The keywords of frames A and B: of version 2 and of version 1.
+using FrameNames = std::array<std::array<std::string_view, 2>, 2>;
+constexpr FrameNames quaternion_frames = {
+    {{"REF_FRAME_A", "Q_FRAME_A"}, {"REF_FRAME_B", "Q_FRAME_B"}}};
+constexpr FrameNames euler_frames = {
+    {{"REF_FRAME_A", "EULER_FRAME_A"}, {"REF_FRAME_B", "EULER_FRAME_B"}}};
 
 class ApmReader : MessageFile {
  public:
@@ -20,12 +25,15 @@ class ApmReader : MessageFile {
 
   AttitudeParameters read() const {
     required(message, {"CCSDS_APM_VERS"});
-    const KvnItem* quaternion = block("QUAT", "Q1");
-    const KvnItem* euler = block("EULER", "EULER_ROT_SEQ");
+    const auto [quaternion, unusable_quaternion] = block("QUAT", "Q1", quaternion_frames);
+    const auto [euler, unusable_euler] = block("EULER", "EULER_ROT_SEQ", euler_frames);
     const KvnItem* source = quaternion != nullptr ? quaternion : euler;
     if (source == nullptr) {
+      for (const auto& unusable : {unusable_quaternion, unusable_euler}) {
+        if (unusable) throw *unusable;
+      }
       throw error(message, "",
-                  block("SPIN", "SPIN_ALPHA") != nullptr ? "spin parameters alone" : "no attitude",
+                  !blocks("SPIN", "SPIN_ALPHA").empty() ? "spin parameters alone" : "no attitude",
                   "a quaternion (QUAT_START) or Euler angles (EULER_START)");
     }
     AttitudeParameters parameters;
@@ -37,12 +45,29 @@ class ApmReader : MessageFile {
   }
 
  private:
-  // A block of that name. In version 1 the message itself, if it has the keyword.
-  const KvnItem* block(const char* name, const char* keyword) const {
+  // The blocks of that name. In version 1 the message itself, if it has the keyword.
+  std::vector<const KvnItem*> blocks(const char* name, const char* keyword) const {
+    std::vector<const KvnItem*> all;
     for (const KvnItem& item : message.items) {
-      if (item.kind == KvnItem::Kind::block && item.key == name) return &item;
+      if (item.kind == KvnItem::Kind::block && item.key == name) all.push_back(&item);
     }
-    return message.find({keyword}) != nullptr ? &message : nullptr;
+    if (all.empty() && message.find({keyword}) != nullptr) all.push_back(&message);
+    return all;
+  }
+
+  // First of these blocks with usable frames. If none has, null and the error of the first.
+  std::pair<const KvnItem*, std::optional<InputError>> block(const char* name, const char* keyword,
+                                                             const FrameNames& names) const {
+    std::optional<InputError> first;
+    for (const KvnItem* in : blocks(name, keyword)) {
+      try {
+        frames(*in, names);
+        return {in, std::nullopt};
+      } catch (const InputError& unusable) {
+        if (!first) first = unusable;
+      }
+    }
+    return {nullptr, first};
   }
 
   double number(const KvnItem& item, const char* unit) const {
@@ -66,29 +91,13 @@ class ApmReader : MessageFile {
     return utc(time, system.value, system);
   }
 
-  struct Frames {
-    bool is_from_body;  // A is the body and B the lab
-    std::string lab;
-  };
-  Frames frames(const KvnItem& in, Names names_a, Names names_b) const {
-    const KvnItem &a = required(in, names_a), &b = required(in, names_b);
-    if (is_body_frame(a.value) == is_body_frame(b.value)) {
-      throw error(a, a.key, in_quotes(a.value) + " and " + in_quotes(b.value),
-                  "a frame of the body (SC_BODY_1) and one of space");
-    }
-    const bool is_from_body = is_body_frame(a.value);
-    const KvnItem& lab = is_from_body ? b : a;
-    const FrameAxes axes = axes_of_frame(lab.value);
-    const bool is_lab = lab.value.starts_with("LAB") || lab.value == "INERTIAL";
-    if (!is_lab && axes != FrameAxes::J2000 && axes != FrameAxes::of_date) {
-      throw error(lab, lab.key, in_quotes(lab.value),
-                  "an inertial frame (EME2000, J2000, GCRF, ICRF, TOD, MOD, TEME) or LAB");
-    }
-    return {is_from_body, lab.value};
+  FramePair frames(const KvnItem& in, const FrameNames& names) const {
+    const KvnItem& a = required(in, {names[0][0], names[0][1]});
+    return {a.value, required(in, {names[1][0], names[1][1]}).value, {path.string(), a.line}};
   }
 
   // The attitude from a rotation from A to B or from B to A.
-  static Quat lab_from_body(const Quat& a_from_b, const Frames& between) {
+  static Quat lab_from_body(const Quat& a_from_b, const FramePair& between) {
     return between.is_from_body ? a_from_b.conjugate() : a_from_b;
   }
   bool is_backwards(const KvnItem& in, std::string_view name) const {
@@ -98,15 +107,8 @@ class ApmReader : MessageFile {
     throw error(*direction, direction->key, in_quotes(direction->value), "A2B or B2A");
   }
 
-  Frames quaternion_frames(const KvnItem& in) const {
-    return frames(in, {"REF_FRAME_A", "Q_FRAME_A"}, {"REF_FRAME_B", "Q_FRAME_B"});
-  }
-  Frames euler_frames(const KvnItem& in) const {
-    return frames(in, {"REF_FRAME_A", "EULER_FRAME_A"}, {"REF_FRAME_B", "EULER_FRAME_B"});
-  }
-
   Quat of_quaternion(const KvnItem& in) const {
-    const Frames between = quaternion_frames(in);
+    const FramePair between = frames(in, quaternion_frames);
     Quat q(number(in, "QC", ""), number(in, "Q1", ""), number(in, "Q2", ""), number(in, "Q3", ""));
     constexpr double tolerance = 0.01;
     if (!(std::abs(q.norm() - 1.0) < tolerance)) {
@@ -158,22 +160,23 @@ class ApmReader : MessageFile {
   }
 
   Quat of_angles(const KvnItem& in) const {
-    const Frames between = euler_frames(in);
+    const FramePair between = frames(in, euler_frames);
     const Quat q = read_angles(in).rotation(0);
     return lab_from_body(is_backwards(in, "EULER_DIR") ? q.conjugate() : q, between);
   }
 
   std::optional<Vec3> rate(const Quat& lab_from_body_now, const KvnItem* quaternion,
                            const KvnItem* euler) const {
-    if (const KvnItem* angular = block("ANGVEL", "ANGVEL_X")) {
-      const Frames between = frames(*angular, {"REF_FRAME_A"}, {"REF_FRAME_B"});
+    const auto [angular, unusable] = block("ANGVEL", "ANGVEL_X", quaternion_frames);
+    if (unusable) throw *unusable;
+    if (angular != nullptr) {
+      const FramePair between = frames(*angular, quaternion_frames);
       const KvnItem& axes = required(*angular, {"ANGVEL_FRAME"});
       Vec3 rate_rad_s =
           degree_rad * vector(*angular, {"ANGVEL_X", "ANGVEL_Y", "ANGVEL_Z"}, "deg/s");
-      if (!is_body_frame(axes.value)) {
-        if (axes.value != between.lab) {
-          throw error(axes, "ANGVEL_FRAME", in_quotes(axes.value), "one of the two frames");
-        }
+      const bool are_of_a =
+          are_axes_of_a(axes.value, between.a, between.b, {path.string(), axes.line});
+      if (are_of_a != between.is_from_body) {
         rate_rad_s = lab_from_body_now.conjugate() * rate_rad_s;
       }
       // The rate of B with respect to A.
@@ -183,7 +186,7 @@ class ApmReader : MessageFile {
       const Vec3 dot = vector(*quaternion, {"Q1_DOT", "Q2_DOT", "Q3_DOT"}, "1/s");
       Quat slope(number(*quaternion, "QC_DOT", "1/s"), dot.x(), dot.y(), dot.z());
       const bool is_inverse =
-          quaternion_frames(*quaternion).is_from_body != is_backwards(*quaternion, "Q_DIR");
+          frames(*quaternion, quaternion_frames).is_from_body != is_backwards(*quaternion, "Q_DIR");
       if (is_inverse) slope = slope.conjugate();
       return 2.0 * (lab_from_body_now.conjugate() * slope).vec();
     }
@@ -204,7 +207,7 @@ class ApmReader : MessageFile {
       of_b_rad_s += slopes_rad_s[static_cast<Eigen::Index>(i)] *
                     (euler.rotation(i + 1).conjugate() * euler.axes[i]);
     }
-    if (!euler_frames(in).is_from_body) return of_b_rad_s;
+    if (!frames(in, euler_frames).is_from_body) return of_b_rad_s;
     return -(euler.rotation(0) * of_b_rad_s);
   }
 };
@@ -212,7 +215,7 @@ class ApmReader : MessageFile {
 }  // namespace
 
 AttitudeParameters read_apm(const std::filesystem::path& path) {
-  return ApmReader(path).read();
+  return ApmReader(path, "APM").read();
 }
 
 }  // namespace photorque

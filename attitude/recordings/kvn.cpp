@@ -1,10 +1,12 @@
 #include "attitude/recordings/kvn.h"
 
 #include <algorithm>
+#include <array>
 
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -162,25 +164,56 @@ std::string first_words(const std::filesystem::path& path) {
   return "";
 }
 
-}  // namespace
-
-KvnItem read_message(const std::filesystem::path& path) {
-  return first_words(path).starts_with("<") ? read_ndm_xml(path) : Parser(path).read();
-}
-
-bool is_message(const std::filesystem::path& path, const std::string& kind) {
-  const std::string words = first_words(path);
-  if (!words.starts_with("<")) return words.starts_with("CCSDS_" + kind + "_VERS");
-  const std::string element = "<" + lower_case(kind);
-  try {
-    return read_file(path).find(element) != std::string::npos;
-  } catch (const InputError&) {
-    return false;
+// Converts the values of keywords that select among names. Other texts are kept as written.
+void take_words(KvnItem& block) {
+  constexpr std::array<std::string_view, 5> keywords = {"FRAME", "_DIR", "_TYPE", "_SEQ",
+                                                        "TIME_SYSTEM"};
+  for (KvnItem& item : block.items) {
+    if (item.kind == KvnItem::Kind::block) take_words(item);
+    if (std::ranges::any_of(keywords, [&item](std::string_view part) {
+          return item.key.find(part) != std::string::npos;
+        })) {
+      item.value = kvn_word(item.value);
+    }
   }
 }
 
-MessageFile::MessageFile(const std::filesystem::path& file)
-    : path(file), message(read_message(file)) {}
+}  // namespace
+
+std::string kvn_word(std::string_view text) {
+  std::string word = joined_text(words_of(text, " \t\r\n\v\f"), "_");
+  std::ranges::transform(word, word.begin(), [](char c) {
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  });
+  return word;
+}
+
+std::vector<std::string> kinds_of_messages(const std::filesystem::path& path) {
+  constexpr std::string_view begin = "CCSDS_", end = "_VERS";
+  constexpr size_t letters = 3;
+  const std::string words = first_words(path);
+  if (words.starts_with(begin) && words.find(end) == begin.size() + letters) {
+    return {words.substr(begin.size(), letters)};
+  }
+  std::vector<std::string> kinds;
+  if (!words.starts_with("<")) return kinds;
+  try {
+    const std::string text = read_file(path);
+    for (const char* kind :
+         {"AEM", "APM", "ACM", "OEM", "OPM", "OMM", "OCM", "CDM", "RDM", "TDM"}) {
+      if (text.find("<" + lower_case(kind)) != std::string::npos) kinds.emplace_back(kind);
+    }
+  } catch (const InputError&) {
+    // The reader of the file reports its errors.
+  }
+  return kinds;
+}
+
+MessageFile::MessageFile(const std::filesystem::path& file, const std::string& kind)
+    : path(file),
+      message(first_words(file).starts_with("<") ? read_ndm_xml(file, kind) : Parser(file).read()) {
+  take_words(message);
+}
 
 InputError MessageFile::error(const KvnItem& at, const std::string& key, const std::string& found,
                               const std::string& expected) const {
@@ -216,11 +249,6 @@ Epoch MessageFile::utc(const Epoch& time, const std::string& system, const KvnIt
   const std::optional<Epoch> utc = to_utc(time, system);
   if (!utc) throw error(at, "TIME_SYSTEM", in_quotes(system), "UTC, UT1, TAI, TT or GPS");
   return *utc;
-}
-
-bool is_body_frame(std::string_view frame) {
-  return frame.starts_with("SC_BODY") || frame.starts_with("ACTUATOR") ||
-         frame.starts_with("INSTRUMENT") || frame.starts_with("SENSOR");
 }
 
 std::optional<std::array<int, 3>> axes_of_sequence(std::string_view sequence) {

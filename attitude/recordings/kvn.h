@@ -36,20 +36,23 @@ KvnItem kvn_assignment(const std::string& key, const std::string& value,
 KvnItem kvn_data(const std::string& line);
 KvnItem kvn_block(const std::string& name);
 
-// Reads a message in KVN or XML as one block without a name. InputError for a block without an end
-// and for a line of an unknown kind.
-KvnItem read_message(const std::filesystem::path& path);
-// Reads a message in XML (attitude ephemeris, attitude parameters, orbit ephemeris) as the
-// equivalent blocks, with the scalar of quaternions last. InputError for other messages.
-KvnItem read_ndm_xml(const std::filesystem::path& path);
-// Whether the first line with content is that of a KVN message of this kind ("AEM"), or whether the
-// XML contains the element of one. False for a file that cannot be read.
-bool is_message(const std::filesystem::path& path, const std::string& kind);
+// Reads an attitude ephemeris (kind "AEM"), attitude parameters ("APM") or an orbit ephemeris
+// ("OEM") in XML as the equivalent blocks, with the scalar of quaternions last. InputError unless
+// the file holds one of this kind.
+KvnItem read_ndm_xml(const std::filesystem::path& path, const std::string& kind);
+// The kinds of CCSDS messages in a file, as "AEM", by the first line with content of KVN or by the
+// elements of XML. None for another file and for one that cannot be read.
+std::vector<std::string> kinds_of_messages(const std::filesystem::path& path);
+// The form in which texts of messages are compared: upper case, with underscores for blanks.
+std::string kvn_word(std::string_view text);
 std::string kvn_text(const KvnItem& message);
 
-// A message and its file. The functions throw InputError with the line of the item at fault.
+// A message in KVN or XML and its file. Names of frames, types and time systems are converted
+// by kvn_word(). The functions throw InputError with the line of the item at fault.
 struct MessageFile {
-  explicit MessageFile(const std::filesystem::path& file);
+  // `kind`: "AEM", "APM" or "OEM". InputError for a block without an end and for a line of an
+  // unknown kind.
+  MessageFile(const std::filesystem::path& file, const std::string& kind);
 
   std::filesystem::path path;
   KvnItem message;
@@ -68,9 +71,6 @@ struct MessageFile {
   Epoch epoch(const std::string& text, const std::string& key, const KvnItem& at) const;
   Epoch utc(const Epoch& time, const std::string& system, const KvnItem& at) const;
 };
-
-// Whether a frame is that of the body or of a part of it.
-bool is_body_frame(std::string_view frame);
 
 // The axes (0 for x) of three successive rotations, written as "321" or "ZYX". Nothing for another
 // text.

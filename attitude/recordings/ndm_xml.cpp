@@ -7,6 +7,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/format.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {
@@ -38,24 +39,20 @@ class XmlMessage {
     if (!parsed) throw error(line_at(parsed.offset), parsed.description(), "well-formed XML");
   }
 
-  KvnItem read() const {
+  KvnItem read(const std::string& upper_kind) const {
+    const std::string kind = lower_case(upper_kind);
     const pugi::xml_node root = document_.document_element();
-    pugi::xml_node node = root;
-    for (const char* kind : {"aem", "apm", "oem"}) {
-      if (root.name() == std::string("ndm") && root.child(kind)) node = root.child(kind);
-    }
-    const std::string kind = node.name();
-    if (kind != "aem" && kind != "apm" && kind != "oem") {
-      throw error(
-          line_of(root), "<" + kind + ">",
-          "an attitude ephemeris (<aem>), attitude parameters (<apm>) or an orbit ephemeris "
-          "(<oem>)");
+    const bool is_combined = root.name() == std::string("ndm");
+    const pugi::xml_node node = is_combined ? root.child(kind.c_str()) : root;
+    if (node.name() != kind || (is_combined && node.next_sibling(kind.c_str()))) {
+      const char* several = node.name() == kind ? " with several <" : " without an <";
+      throw error(line_of(root),
+                  "<" + std::string(root.name()) + ">" + (is_combined ? several + kind + ">" : ""),
+                  "one <" + kind + ">");
     }
     KvnItem message = kvn_block("");
-    message.items.push_back(kvn_assignment(kind == "aem"   ? "CCSDS_AEM_VERS"
-                                           : kind == "apm" ? "CCSDS_APM_VERS"
-                                                           : "CCSDS_OEM_VERS",
-                                           node.attribute("version").value()));
+    message.items.push_back(
+        kvn_assignment("CCSDS_" + upper_kind + "_VERS", node.attribute("version").value()));
     add_assignments(node.child("header"), message);
     for (const pugi::xml_node& segment : node.child("body").children("segment")) {
       if (kind == "apm") {
@@ -160,8 +157,8 @@ class XmlMessage {
 
 }  // namespace
 
-KvnItem read_ndm_xml(const std::filesystem::path& path) {
-  return XmlMessage(path).read();
+KvnItem read_ndm_xml(const std::filesystem::path& path, const std::string& kind) {
+  return XmlMessage(path).read(kind);
 }
 
 }  // namespace photorque

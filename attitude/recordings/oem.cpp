@@ -1,11 +1,11 @@
 #include "attitude/recordings/oem.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 
 #include "attitude/environment/environment.h"
+#include "attitude/recordings/frames.h"
 #include "attitude/recordings/kvn.h"
 #include "core/constants.h"
 #include "core/text/parse.h"
@@ -17,12 +17,6 @@ constexpr double km_m = 1e3;
 constexpr double beside_s = 60.0;         // permitted extrapolation at the ends of an ephemeris
 constexpr double max_uncertainty = 1e-3;  // of the interpolation, relative to the distance
 constexpr double same_instant_s = 1e-3;
-
-std::string upper(std::string_view text) {
-  std::string all(text);
-  std::ranges::transform(all, all.begin(), [](unsigned char c) { return std::toupper(c); });
-  return all;
-}
 
 struct State {
   double time_s;  // since the first state of the file
@@ -41,17 +35,6 @@ Vec3 about_z(const Vec3& v, double angle_rad) {
 }
 
 }  // namespace
-
-FrameAxes axes_of_frame(std::string_view frame) {
-  const std::string name = upper(frame);
-  if (name == "EME2000" || name == "J2000" || name == "GCRF" || name.starts_with("ICRF")) {
-    return FrameAxes::J2000;
-  }
-  if (name.starts_with("TOD") || name.starts_with("MOD") || name.starts_with("TEME")) {
-    return FrameAxes::of_date;
-  }
-  return name.starts_with("ITRF") ? FrameAxes::earth : FrameAxes::unknown;
-}
 
 std::array<Vec3, 2> OrbitEphemeris::Piece::at(double time_s) const {
   Vec3 value = Vec3::Zero(), slope = Vec3::Zero();
@@ -81,20 +64,20 @@ struct OrbitEphemeris::Reader : MessageFile {
   // Checks that all segments have equal frames, time systems and objects.
   void read_frame(const KvnItem& meta) {
     const std::string centre = required(meta, {"CENTER_NAME"}).value;
-    if (upper(centre) != "EARTH") {
+    if (kvn_word(centre) != "EARTH") {
       throw error(meta, "CENTER_NAME", in_quotes(centre), "EARTH: orbits about the Earth");
     }
-    const std::string here = upper(required(meta, {"REF_FRAME"}).value);
+    const std::string here = required(meta, {"REF_FRAME"}).value;
     if (axes_of_frame(here) == FrameAxes::unknown) {
       throw error(meta, "REF_FRAME", in_quotes(here),
                   "EME2000, J2000, GCRF, ICRF, TOD, MOD, TEME or ITRF (with or without its year)");
     }
-    const std::string system = upper(required(meta, {"TIME_SYSTEM"}).value);
+    const std::string system = required(meta, {"TIME_SYSTEM"}).value;
     utc({}, system, meta);
     const std::string object = required(meta, {"OBJECT_NAME"}).value;
     if (frame.empty()) frame = here, time_system = system, into.object_name_ = object;
     const auto same = [&](const char* key, const std::string& before, const std::string& now) {
-      if (before == now) return;
+      if (kvn_word(before) == kvn_word(now)) return;
       throw error(meta, key, in_quotes(now) + " after " + in_quotes(before),
                   "segments of one object, frame and time system");
     };
@@ -107,7 +90,7 @@ struct OrbitEphemeris::Reader : MessageFile {
     const KvnItem* named = meta.find({"INTERPOLATION"});
     Method method;
     if (named == nullptr) return method;
-    const std::string name = upper(named->value);
+    const std::string name = kvn_word(named->value);
     if (name != "HERMITE" && name != "LAGRANGE" && name != "LINEAR") {
       throw error(meta, "INTERPOLATION", in_quotes(named->value), "HERMITE, LAGRANGE or LINEAR");
     }
@@ -281,7 +264,7 @@ struct OrbitEphemeris::Reader : MessageFile {
 };
 
 OrbitEphemeris::OrbitEphemeris(const std::filesystem::path& path) : file_(path.string()) {
-  Reader{MessageFile(path), *this, {}, {}, {}}.read();
+  Reader{MessageFile(path, "OEM"), *this, {}, {}, {}}.read();
 }
 
 }  // namespace photorque

@@ -4,23 +4,12 @@
 #include <array>
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "attitude/environment/epoch.h"
 #include "core/transform.h"
 
 namespace photorque {
-
-// Axes of a CCSDS reference frame for orbits about the Earth. Source: SANA registry of celestial
-// body reference frames.
-enum class FrameAxes {
-  J2000,    // inertial, equator of J2000: EME2000, J2000, GCRF, ICRF…
-  of_date,  // inertial, equator and equinox of date: TOD, MOD, TEME
-  earth,    // rotating with the Earth: ITRF…
-  unknown,
-};
-FrameAxes axes_of_frame(std::string_view frame);
 
 // The path of one object, interpolated between the states of an OEM by the method that it states
 // (HERMITE, LAGRANGE or LINEAR; by default HERMITE of degree 7, with four states). Axes are those

@@ -99,7 +99,7 @@ class RecordingReader {
       : path_(path), options_(options), lines_(path, options.header) {}
 
   Recording read() {
-    if (is_message(path_, "AEM")) {
+    if (is_aem(path_)) {
       take_attitudes();
       finish();
       return std::move(recording_);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "attitude/recordings/kvn.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
 #include "core/numerics/median.h"

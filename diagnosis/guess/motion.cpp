@@ -6,8 +6,8 @@
 #include "attitude/estimation/segments.h"
 #include "attitude/estimation/swing.h"
 #include "attitude/observation/noise_levels.h"
+#include "attitude/recordings/aem.h"
 #include "attitude/recordings/columns.h"
-#include "attitude/recordings/kvn.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
@@ -344,6 +344,10 @@ void infer_machine(Machine& m) {
             " is all but a twentieth: it turns about one axis.";
     return m.observe_as(Topology::one_axis, Vec3::Unit(*axis));
   }
+  if (is_in_space(m.names.front())) {
+    m.why = "an attitude relative to an inertial frame: in orbit, nothing carries it.";
+    return m.observe_as(Topology::free);
+  }
   m.observe_as(Topology::tabletop);
   const std::optional<FreeInertia> found = free_inertia(m.runs);
   constexpr double explains = 0.2;
@@ -400,7 +404,7 @@ std::vector<GuessedColumn> with_rate_from(std::vector<GuessedColumn> columns, in
 // Throws InputError for a file without a time or without a channel of motion.
 void require_motion(const fs::path& path, const std::vector<GuessedColumn>& columns,
                     const RecordingOptions& reading) {
-  if (is_message(path, "AEM")) return;
+  if (is_aem(path)) return;
   const auto any = [&columns](const auto& is) { return std::ranges::any_of(columns, is); };
   const bool counts = any([](const GuessedColumn& c) { return c.channel == "frame"; });
   const bool has_time =

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "attitude/recordings/kvn.h"
+#include "attitude/recordings/aem.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
@@ -501,8 +501,7 @@ void refuse_wrong_units(const std::vector<ReadColumn>& columns, const InputLocat
 
 std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path,
                                          const std::vector<std::string>& header) {
-  if (is_message(path, "AEM"))
-    return {{"q_w", "q_w"}, {"q_x", "q_x"}, {"q_y", "q_y"}, {"q_z", "q_z"}};
+  if (is_aem(path)) return {{"q_w", "q_w"}, {"q_x", "q_x"}, {"q_y", "q_y"}, {"q_z", "q_z"}};
   const FileHead head = head_of(path, header);
   std::vector<ReadColumn> columns = read_columns(head);
   if (!is_taken(columns, "t")) read_counter(head, columns);
@@ -520,7 +519,7 @@ GuessedCurve guess_curve(const std::filesystem::path& path,
                          const std::vector<std::string>& header) {
   GuessedCurve curve;
   std::vector<size_t> voltages, currents;
-  if (is_message(path, "AEM")) return curve;
+  if (is_aem(path)) return curve;
   const FileHead head = head_of(path, header);
   std::vector<HeaderCell> cells;
   for (size_t place = 0; place < head.header.size(); ++place) {

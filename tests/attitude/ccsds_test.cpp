@@ -9,8 +9,10 @@
 
 #include "attitude/environment/epoch.h"
 #include "attitude/recordings/aem.h"
+#include "attitude/recordings/apm.h"
 #include "attitude/recordings/recording.h"
 #include "core/errors.h"
+#include "core/text/parse.h"
 #include "tests/files.h"
 #include "tests/outside.h"
 #include "tests/refusal.h"
@@ -157,6 +159,18 @@ TEST(Aem, Version2HasQuaternionsAndEulerAnglesWithRates) {
       "ANGVEL_FRAME = SC_BODY_1", "ANGVEL_FRAME = EME2000"));
   const auto about_x = aem_attitudes(inertial);
   EXPECT_LT((*about_x[0].rate_body_rad_s - degree_rad * Vec3(1, 3, -2)).norm(), 1e-15);
+  // A frame may be named by its keyword. A third frame is refused.
+  const std::string text = file_text(inertial);
+  const auto by_keyword =
+                 new_file(replaced(text, "FRAME = EME2000\nMETA", "FRAME = REF_FRAME_A\nMETA")),
+             by_other =
+                 new_file(replaced(text, "FRAME = EME2000\nMETA", "FRAME = ref_frame_b\nMETA")),
+             third = new_file(replaced(text, "FRAME = EME2000\nMETA", "FRAME = ITRF-97\nMETA"));
+  EXPECT_EQ(aem_attitudes(by_keyword)[0].rate_body_rad_s, about_x[0].rate_body_rad_s);
+  EXPECT_EQ(aem_attitudes(by_other)[0].rate_body_rad_s, degree_rad * Vec3(1, 2, 3));
+  EXPECT_THAT(
+      refusal_of([&] { aem_attitudes(third); }),
+      testing::HasSubstr("ANGVEL_FRAME: found \"ITRF-97\", expected one of the two frames"));
   const auto spin = new_file(message("SPIN", "2023-054T00:00:09.150001 1 2 3 4\n"));
   EXPECT_THROW(aem_attitudes(spin), InputError);
 }
@@ -178,7 +192,7 @@ TEST(Aem, XmlAndKeywordsAgree) {
       "<quaternionRate><QC_DOT units=\"1/s\">0</QC_DOT><Q1_DOT>0</Q1_DOT><Q2_DOT>0</Q2_DOT>"
       "<Q3_DOT>0</Q3_DOT></quaternionRate></quaternionDerivative></attitudeState>\n"
       "</data></segment></body></aem>\n");
-  EXPECT_TRUE(is_message(xml, "AEM"));
+  EXPECT_TRUE(is_aem(xml));
   const auto attitudes = aem_attitudes(xml);
   ASSERT_EQ(attitudes.size(), 1u);
   EXPECT_LT(attitudes[0].lab_from_body.angularDistance(Quat(0.8, 0, 0.6, 0)), 1e-15);
@@ -189,8 +203,100 @@ TEST(Aem, XmlAndKeywordsAgree) {
   const size_t row = rows.find("<quaternionDerivative>"), end = rows.find("</attitudeState>");
   const auto empty = new_file(rows.erase(row, end - row));
   EXPECT_THAT(refusal_of([&] { read_aem(empty); }), testing::HasSubstr(":6: found an empty row"));
-  const auto other = new_file("<?xml version=\"1.0\"?>\n<opm version=\"1.0\"/>\n");
-  EXPECT_FALSE(is_message(other, "AEM"));
+  std::string names = file_text(xml);
+  for (const char* name : {"LAB", "SC_BODY_1", "A2B", "QUATERNION/DERIVATIVE"}) {
+    names = replaced(names, std::string(">") + name + "<", ">\n " + lower_case(name) + "\n<");
+  }
+  const auto lower = new_file(names);
+  EXPECT_EQ(aem_attitudes(lower)[0].lab_from_body.coeffs(), attitudes[0].lab_from_body.coeffs());
+}
+
+// Messages of other kinds are named, since advice for columns of a table would not help.
+TEST(Aem, OtherMessagesAreNoRecordings) {
+  const auto kvn = new_file("COMMENT none\nCCSDS_APM_VERS = 2.0\nORIGINATOR = TEST\n"),
+             xml = new_file("<?xml version=\"1.0\"?>\n<opm version=\"1.0\"/>\n"),
+             table = new_file("t_s,rate_rad_s\n0,1\n1,1\n");
+  EXPECT_THAT(refusal_of([&] { read_recording(kvn); }),
+              testing::HasSubstr("a CCSDS message APM, expected a recording: of CCSDS messages an "
+                                 "attitude ephemeris (AEM)"));
+  EXPECT_THAT(refusal_of([&] { read_recording(xml); }), testing::HasSubstr("a CCSDS message OPM"));
+  EXPECT_FALSE(is_aem(table));
+}
+
+// A file may combine messages of several kinds. The one that is asked for is read.
+TEST(Aem, IsReadFromACombinationOfMessages) {
+  const std::string aem =
+      "<aem id=\"CCSDS_AEM_VERS\" version=\"2.0\"><header><CREATION_DATE>2020</CREATION_DATE>"
+      "<ORIGINATOR>TEST</ORIGINATOR></header><body><segment><metadata><OBJECT_NAME>A</OBJECT_NAME>"
+      "<OBJECT_ID>B</OBJECT_ID><REF_FRAME_A>LAB</REF_FRAME_A><REF_FRAME_B>SC_BODY</REF_FRAME_B>"
+      "<TIME_SYSTEM>UTC</TIME_SYSTEM><START_TIME>2020-01-01T00:00:00</START_TIME>"
+      "<STOP_TIME>2020-01-01T00:00:00</STOP_TIME><ATTITUDE_TYPE>QUATERNION</ATTITUDE_TYPE>"
+      "</metadata><data><attitudeState><quaternionEphemeris><EPOCH>2020-01-01T00:00:00</EPOCH>"
+      "<quaternion><Q1>0</Q1><Q2>0.6</Q2><Q3>0</Q3><QC>0.8</QC></quaternion>"
+      "</quaternionEphemeris></attitudeState></data></segment></body></aem>\n";
+  const std::string apm =
+      "<apm id=\"CCSDS_APM_VERS\" version=\"2.0\"><header/><body><segment><metadata><TIME_SYSTEM>"
+      "UTC</TIME_SYSTEM></metadata><data><EPOCH>2020-01-01T00:00:00</EPOCH><quaternionState>"
+      "<REF_FRAME_A>LAB</REF_FRAME_A><REF_FRAME_B>SC_BODY</REF_FRAME_B><quaternion><Q1>0.6</Q1>"
+      "<Q2>0</Q2><Q3>0</Q3><QC>0.8</QC></quaternion></quaternionState></data></segment></body>"
+      "</apm>\n";
+  const auto both = new_file("<?xml version=\"1.0\"?>\n<ndm>" + aem + apm + "</ndm>\n"),
+             twice = new_file("<?xml version=\"1.0\"?>\n<ndm>" + aem + aem + "</ndm>\n");
+  EXPECT_EQ(aem_attitudes(both)[0].lab_from_body.y(), 0.6);
+  EXPECT_EQ(read_apm(both).lab_from_body.x(), 0.6);
+  EXPECT_THAT(refusal_of([&] { read_aem(twice); }),
+              testing::HasSubstr("<ndm> with several <aem>, expected one <aem>"));
+  EXPECT_THAT(refusal_of([&] { read_apm(twice); }),
+              testing::HasSubstr("<ndm> without an <apm>, expected one <apm>"));
+}
+
+// The book permits texts in all lower case, and blanks for underscores. 0.8 + 0.6 j as the rotation
+// from the body to the inertial frame.
+TEST(Aem, NamesMayBeInLowerCase) {
+  const std::string upper =
+      replaced(replaced(replaced(small_aem, "REF_FRAME_A = LAB", "REF_FRAME_A = SC_BODY_1"),
+                        "REF_FRAME_B = SC_BODY_1", "REF_FRAME_B = EME2000"),
+               "1 0 0 0", "0.8 0 0.6 0");
+  std::string lower = upper;
+  for (const char* name : {"= SC_BODY_1", "EME2000", "A2B", "= QUATERNION", "FIRST"}) {
+    lower = replaced(lower, name, lower_case(name));
+  }
+  for (const std::string& text : {upper, lower, replaced(lower, "sc_body_1", "sc body 1")}) {
+    const auto file = new_file(text);
+    const Quat found = aem_attitudes(file)[0].lab_from_body;
+    EXPECT_LT(found.angularDistance(Quat(0.8, 0, -0.6, 0)), 1e-15) << found;
+  }
+}
+
+// Names of the SANA registry of spacecraft body reference frames.
+TEST(Aem, EveryFrameOfTheBodyIsKnown) {
+  for (const std::string frame :
+       {"ACC_1", "ACTUATOR_2", "AST_1", "CSS_11", "DSS_1", "ESA_1", "GYRO_FRAME_1", "IMU_FRAME_1",
+        "INSTRUMENT_A", "MTA_1", "RW_3", "SA_1", "SC_BODY", "SENSOR_1", "STARTRACKER_2", "TAM_1"}) {
+    const auto file = new_file(
+        replaced(replaced(replaced(small_aem, "REF_FRAME_A = LAB", "REF_FRAME_A = " + frame),
+                          "REF_FRAME_B = SC_BODY_1", "REF_FRAME_B = ICRF"),
+                 "1 0 0 0", "0.8 0 0.6 0"));
+    EXPECT_EQ(aem_attitudes(file)[0].lab_from_body.y(), -0.6) << frame;
+  }
+}
+
+TEST(Aem, OneFrameIsOfTheBodyAndTheOtherOneAtRest) {
+  for (const char* frame : {"SC_BODY_2", "ITRF-97", "LVLH", "SAT_FRAME", "ESAT"}) {
+    const auto file = new_file(replaced(small_aem, "= LAB", std::string("= ") + frame));
+    EXPECT_THAT(refusal_of([&] { aem_attitudes(file); }),
+                testing::HasSubstr(":4: found the frames \"" + std::string(frame) +
+                                   "\" and \"SC_BODY_1\", expected one of the body"));
+  }
+}
+
+TEST(Aem, ObjectsAreComparedWithoutCaseAndUnderscores) {
+  const std::string one = replaced(small_aem, "OBJECT_NAME = A", "OBJECT_NAME = MY SATELLITE");
+  const std::string segment = one.substr(one.find("META_START"));
+  const auto written = new_file(one + replaced(segment, "MY SATELLITE", "my_satellite")),
+             other = new_file(one + replaced(segment, "MY SATELLITE", "your satellite"));
+  EXPECT_EQ(aem_attitudes(written).size(), 4u);
+  EXPECT_THAT(refusal_of([&] { aem_attitudes(other); }), testing::HasSubstr("one object"));
 }
 
 TEST(Aem, ScalarFirstAndDirectionAreHeeded) {
@@ -226,6 +332,7 @@ TEST(Aem, WrongMessagesAreRefused) {
            {"OBJECT_NAME = A\n", ""},
            {"OBJECT_NAME", "OBJECT_NOME"},
            {"ATTITUDE_DIR = A2B", "ATTITUDE_DIR = AB"},
+           {"QUATERNION_TYPE = FIRST", "QUATERNION_TYPE = MIDDLE"},
            {"1 0 0 0", "1 0 0"},
            {"1 0 0 0", "1 0 0 x"},
            {"DATA_STOP", ""},

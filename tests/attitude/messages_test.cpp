@@ -139,6 +139,8 @@ TEST(OrbitMessage, SegmentsFollowEachOther) {
       "COVARIANCE_START\nEPOCH = 2026-03-01T00:00:00\n1\n0 1\nCOVARIANCE_STOP\n";
   const OrbitEphemeris orbit = orbit_of(oem_text(ellipse, 1200.0, 60.0) + covariance + block);
   EXPECT_EQ(orbit.duration_s(), 2400.0);
+  const std::string lower = replaced(block, "OBJECT_NAME = A", "OBJECT_NAME = a");
+  EXPECT_EQ(orbit_of(oem_text(ellipse, 1200.0, 60.0) + lower).duration_s(), 2400.0);
   EXPECT_LT((orbit.at(1199.0)[0] - ellipse(1199.0)[0]).norm(), 0.1);
   EXPECT_LT((orbit.at(1199.0)[1] - ellipse(1199.0)[1]).norm(), 0.1);
   EXPECT_GT(orbit.at(1201.0)[1].dot(-ellipse(1200.0)[1]), 0.0);
@@ -344,6 +346,17 @@ TEST(AttitudeMessage, ThreeFormatsOfOrekitGiveOneState) {
     EXPECT_LT((*read.rate_body_rad_s - orekit_rate_rad_s).norm(), 1e-12);
     EXPECT_EQ(epoch_text(read.epoch), "2008-04-07T00:00:00.000000");
   }
+  const std::string unusable = replaced(block("QUAT", quaternion), "EME2000", "ITRF1997");
+  const auto second = new_file(head + unusable + block("QUAT", quaternion)),
+             after = new_file(head + unusable + block("EULER", angles)),
+             none = new_file(head + unusable + replaced(unusable, "ITRF1997", "LVLH")),
+             lower =
+                 new_file(head + replaced(replaced(block("QUAT", quaternion), "EME2000", "eme2000"),
+                                          "SC_BODY_1", "sc_body_1"));
+  for (const auto& file : {second.string(), after.string(), lower.string()}) {
+    EXPECT_LT(read_apm(file).lab_from_body.angularDistance(orekit_attitude), 1e-12);
+  }
+  EXPECT_THAT(refusal_of([&] { read_apm(none); }), testing::HasSubstr("\"ITRF1997\""));
   const auto still = new_file(head + block("QUAT", quaternion));
   EXPECT_FALSE(read_apm(still).rate_body_rad_s);
 }

@@ -232,5 +232,34 @@ TEST_F(CheckCommand, NewLightsThePartThatItMeasures) {
   EXPECT_THAT(file_text(experiment), HasSubstr("node = \"panel\""));
 }
 
+// A sheet that stands upright, one that looks down, and a box that is seen from inside only. No
+// message names the experiment, which is not written.
+TEST_F(CheckCommand, NewLightsPartsFromAnySide) {
+  write("upright.obj", "v 0 1 0\nv 0 1 1\nv 1 1 1\nv 1 1 0\nf 1 2 3 4\n");
+  write("ceiling.obj", "v 0 0 3\nv 0 1 3\nv 1 1 3\nv 1 0 3\nf 1 2 3 4\n");
+  const std::string unit = " --set scene.unit=m --set trace.rays=4096";
+  succeed("new " + at("upright.toml") + " --scene " + at("upright.obj") + unit);
+  EXPECT_THAT(file_text(at("upright.toml")), HasSubstr("direction = [0, -1, 0]"));
+  EXPECT_THAT(file_text(at("upright.toml")), HasSubstr("facing = [0, 1, 0]"));
+  succeed("new " + at("ceiling.toml") + " --scene " + at("ceiling.obj") + unit);
+  EXPECT_THAT(file_text(at("ceiling.toml")), HasSubstr("direction = [0, 0, 1]"));
+  std::string box, corners;
+  for (int i = 0; i < 8; ++i) {
+    corners += "v " + std::to_string(i & 1) + " " + std::to_string(i >> 1 & 1) + " " +
+               std::to_string(i >> 2) + "\n";
+  }
+  const char* inwards[] = {"1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"};
+  for (const char* face : inwards)
+    box += "o side_" + std::string(1, face[2]) + "\nf " + face + "\n";
+  write("box.obj", corners + box);
+  for (const std::string& line :
+       {refused("new " + at("box.toml") + " --scene " + at("box.obj") + unit),
+        refused("new " + at("box.toml") + " --set platform.mas_kg=20"),
+        refused("new " + at("box.toml") + " --set disturbance[9].kind=3")}) {
+    EXPECT_THAT(line, Not(HasSubstr("box.toml")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(at("box.toml")));
+}
+
 }  // namespace
 }  // namespace photorque

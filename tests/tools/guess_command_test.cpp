@@ -101,6 +101,32 @@ TEST_F(GuessCommand, PrintsItsFilesAndKeepsChangedOnes) {
   EXPECT_THAT(file_text(at("guess/disc.toml")), HasSubstr("# confirmed"));
 }
 
+// Nothing carries what turns in an inertial frame.
+TEST_F(GuessCommand, AnAttitudeInSpaceIsThatOfAFreeBody) {
+  const auto topology = [&](const std::string& frame) {
+    std::string text =
+        "CCSDS_AEM_VERS = 2.0\nCREATION_DATE = 2026-01-01T00:00:00\nORIGINATOR = TEST\nMETA_START\n"
+        "OBJECT_NAME = A\nOBJECT_ID = B\nREF_FRAME_A = " +
+        frame +
+        "\nREF_FRAME_B = SC_BODY_1\nTIME_SYSTEM = UTC\nSTART_TIME = 2026-01-01T00:00:00\n"
+        "STOP_TIME = 2026-01-01T00:01:00\nATTITUDE_TYPE = QUATERNION\nMETA_STOP\nDATA_START\n";
+    for (int i = 0; i < 60; ++i) {
+      const double half = 0.01 * i + 0.1 * std::sin(0.3 * i);
+      char row[120];
+      std::snprintf(row, sizeof row, "2026-01-01T00:00:%02d 0 %.9f 0 %.9f\n", i, std::sin(half),
+                    std::cos(half));
+      text += row;
+    }
+    const fs::path file = write(frame + ".aem", text + "DATA_STOP\n");
+    succeed("diagnose --guess " + file.string() + " --out " + at("guess"));
+    return file_text(at("guess/" + frame + ".toml"));
+  };
+  EXPECT_THAT(topology("J2000"), HasSubstr("topology = \"free\""));
+  EXPECT_THAT(topology("LAB"), HasSubstr("topology = \"tabletop\""));
+  const fs::path orbit = write("states.oem", "CCSDS_OEM_VERS = 2.0\n");
+  EXPECT_THAT(refused("diagnose --guess " + orbit.string()), HasSubstr("a CCSDS message OEM"));
+}
+
 TEST_F(GuessCommand, NeedsOneOfTheTwo) {
   EXPECT_THAT(run("diagnose").err, HasSubstr("experiment is required, or --guess RECORDING"));
   const Outcome both = run("diagnose a.toml --guess b.csv");

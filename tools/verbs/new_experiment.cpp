@@ -1,8 +1,10 @@
 // photorque new: a first experiment with comments, for a user's model or for a platform alone.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -86,11 +88,11 @@ Eigen::AlignedBox3d box_of(const Scene& scene, const std::optional<std::string>&
   return box;
 }
 
-double upward_area_m2(const Scene& scene, uint32_t instance) {
+double area_towards_m2(const Scene& scene, uint32_t instance, const Vec3& direction) {
   double area = 0.0;
   const std::vector<uint32_t> alone = {instance};
-  for (const SurfaceFace& face : faces_of(scene, alone, Vec3::UnitZ())) {
-    area += face.area_body_m2.z();
+  for (const SurfaceFace& face : faces_of(scene, alone, direction)) {
+    area += face.area_body_m2.dot(direction);
   }
   return area;
 }
@@ -101,23 +103,36 @@ Vec3 middle_m(const Scene& scene, const std::string& path) {
   return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.center());
 }
 
-// The part that most likely receives light from above, judged by its name, otherwise the part with
-// the largest area seen from above.
-std::string lit_node(const Scene& scene) {
-  std::string best;
-  double best_score = -1.0;
-  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const std::string& path = scene.instances[i].path;
-    const auto contains = [&](const char* word) { return path.find(word) != std::string::npos; };
-    const double bonus = contains("solar") || contains("cells") || contains("panel") ? 1e6 : 0.0;
-    const double area_m2 = upward_area_m2(scene, i);
-    const double score = area_m2 > 0.0 ? area_m2 * (1.0 + bonus) : -1.0;
-    if (score > best_score) {
-      best_score = score;
-      best = path;
+// A part, and the direction from it to a lamp.
+struct LitPart {
+  std::string path;
+  Vec3 to_lamp = Vec3::UnitZ();
+  double score = 0.0;
+};
+
+// For each direction along an axis the part that most likely receives light from there, judged by
+// its name, otherwise the part with the largest area seen from there. Likely ones come first.
+std::vector<LitPart> lit_parts(const Scene& scene) {
+  constexpr double above = 1.01;  // where a lamp usually hangs; decides between equal sides
+  std::vector<LitPart> parts;
+  for (const int axis : {2, 0, 1}) {
+    for (const double sign : {1.0, -1.0}) {
+      LitPart best{"", sign * Vec3::Unit(axis)};
+      for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const std::string& path = scene.instances[i].path;
+        const auto contains = [&](const char* word) {
+          return path.find(word) != std::string::npos;
+        };
+        const bool is_named = contains("solar") || contains("cells") || contains("panel");
+        const double score = area_towards_m2(scene, i, best.to_lamp) * (is_named ? 1e6 : 1.0) *
+                             (best.to_lamp.z() > 0.0 ? above : 1.0);
+        if (score > best.score) best = {path, best.to_lamp, score};
+      }
+      parts.push_back(best);
     }
   }
-  return best;
+  std::ranges::stable_sort(parts, std::greater(), &LitPart::score);
+  return parts;
 }
 
 std::string listed(const std::string& what, const std::set<std::string>& names) {
@@ -226,19 +241,26 @@ std::string materials_text(const SceneWords& words, const std::set<std::string>&
   return text;
 }
 
-std::string light_text(const GltfModel& model, const std::string& file, const SceneWords& words) {
+std::string triple(const Vec3& v) {
+  return "[" + number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + "]";
+}
+
+std::string light_text(const GltfModel& model, const std::string& file, const SceneWords& words,
+                       const LitPart& lit) {
   const Scene& scene = model.scene;
   std::set<std::string> nodes, materials;
   for (const Instance& instance : scene.instances) {
     nodes.insert(instance.path);
     if (!instance.material.empty()) materials.insert(instance.material);
   }
-  const double radius_m = scene.radius_m(),
-               height_m = std::max(0.0, box_of(scene).max().z()) + 2.0 * radius_m;
-  const std::string lit = lit_node(scene);
-  const Vec3 above_m = middle_m(scene, lit);
+  const double radius_m = scene.radius_m();
+  const Eigen::AlignedBox3d box = box_of(scene);
+  const double farthest_m =
+      std::max(box.min().dot(lit.to_lamp), box.max().dot(lit.to_lamp));  // along an axis
+  Vec3 lamp_m = middle_m(scene, lit.path);
+  lamp_m += (std::max(0.0, farthest_m) + 2.0 * radius_m - lamp_m.dot(lit.to_lamp)) * lit.to_lamp;
   // Removes the rounding residue of a coordinate that is zero in the model.
-  const auto small = [&](double x_m) { return std::abs(x_m) < 1e-4 * radius_m ? 0.0 : x_m; };
+  for (double& x_m : lamp_m) x_m = std::abs(x_m) < 1e-4 * radius_m ? 0.0 : x_m;
   return "[scene]\nfile = " + quoted(file) + scene_text(words) + materials_text(words, materials) +
          "# ---- Light\n[[source]]\nkind = \"led\"                         # led | led_array | "
          "laser "
@@ -247,12 +269,13 @@ std::string light_text(const GltfModel& model, const std::string& file, const Sc
          "aperture_diameter_m = " +
          number(0.1 * radius_m) +
          "\nprofile = \"gaussian\"\nfwhm_deg = 10                         # of the radiant "
-         "intensity\nwavelength_nm = 730\nposition_m = [" +
-         number(small(above_m.x())) + ", " + number(small(above_m.y())) + ", " + number(height_m) +
-         "]              # lab: z up; above the part that is measured\ndirection = [0, 0, -1]\n\n# "
-         "---- What is measured\n" +
-         listed("Parts", nodes) + "[[receiver]]\nkind = \"flux_map\"\nnode = " + quoted(lit) +
-         "\nfacing = [0, 0, 1]                    # only faces turned up\nbins = [100, 100]\n\n"
+         "intensity\nwavelength_nm = 730\nposition_m = " +
+         triple(lamp_m) +
+         "              # lab: z up; before the part that is measured\ndirection = " +
+         triple(Vec3::Zero() - lit.to_lamp) + "\n\n# ---- What is measured\n" +
+         listed("Parts", nodes) + "[[receiver]]\nkind = \"flux_map\"\nnode = " + quoted(lit.path) +
+         "\nfacing = " + triple(Vec3::Zero() + lit.to_lamp) +
+         "                    # only faces turned to the lamp\nbins = [100, 100]\n\n"
          "[[receiver]]\nkind = \"wrench\"                       # force and torque of light on the "
          "whole\nname = \"platform\"\n\n[attitude]\ntilt_deg = 0\nheading_deg = 0\n\n[trace]\nrays "
          "= 1048576                        # standard errors fall with their root\n\n"
@@ -263,6 +286,46 @@ std::string light_text(const GltfModel& model, const std::string& file, const Sc
          "rays = 131072                         # at each\n";
 }
 
+// A mistake in the text, without the name of its file, which is not written.
+InputError without_file(const InputError& mistake, const fs::path& experiment) {
+  std::string text = mistake.what();
+  if (text.starts_with(experiment.string())) {
+    text.erase(0, text.find(": ", experiment.string().size()));
+  } else if (mistake.names_file()) {
+    return mistake;
+  } else {
+    text.insert(0, ": ");
+  }
+  constexpr std::string_view first = ": found ", second = ", expected ";
+  const size_t found = text.find(first), expected = text.find(second, found);
+  if (expected == std::string::npos) return {{"photorque new"}, text.substr(2), "", ""};
+  const size_t value = found + first.size();
+  return {{"photorque new"},
+          found > 0 ? text.substr(2, found - 2) : "",
+          text.substr(value, expected - value),
+          text.substr(expected + second.size())};
+}
+
+// The first of the texts without a mistake and the commands that can run with it. InputError with
+// the mistake of the first text if all have one.
+std::pair<std::string, CheckReport> first_right(const std::vector<std::string>& texts,
+                                                const Options& options) {
+  RunOptions checked;
+  checked.experiment = options.experiment;
+  std::optional<InputError> first;
+  for (const std::string& text : texts) {
+    try {
+      checked.text = with_overrides(text, options);
+      CheckReport report = run_check(checked);
+      if (report.mistakes.empty()) return {*checked.text, std::move(report)};
+      throw InputError(report.mistakes.front());
+    } catch (const InputError& mistake) {
+      if (!first) first = without_file(mistake, options.experiment);
+    }
+  }
+  throw InputError(*first);
+}
+
 void run(const Options& options, const Program&) {
   const Console console = terminal(options);
   std::error_code unreadable;
@@ -270,32 +333,30 @@ void run(const Options& options, const Program&) {
     throw InputError({options.experiment.string()}, "", "an existing file",
                      "the name of a new file");
   }
-  std::string text =
+  const std::string head =
       "# Made by photorque new: a first experiment with assumed values. The name of a key ends "
       "with its unit; "
       "docs/experiment.md (scene, light) and docs/disturbances.md (platform) have them all.\n# "
       "photorque check " +
       options.experiment.filename().string() + " prints the commands that can run with it.\n\n";
   std::string size;
+  std::vector<std::string> texts;  // in order of preference
   if (options.scene) {
     const SceneWords words = scene_words(options);
     const GltfModel model =
         words.cad ? read_cad(*options.scene, *words.cad) : read_gltf(*options.scene);
     const fs::path file = fs::absolute(*options.scene)
                               .lexically_proximate(fs::absolute(options.experiment).parent_path());
-    text += light_text(model, file.generic_string(), words);
+    for (const LitPart& lit : lit_parts(model.scene)) {
+      texts.push_back(head + light_text(model, file.generic_string(), words, lit));
+    }
     size = size_text(model.scene, *options.scene, words);
   } else {
-    text += std::string(platform_text).substr(1);
+    texts.push_back(head + std::string(platform_text).substr(1));
   }
-  text = with_overrides(text, options);
   // The folder must exist, because file names are relative to it.
   if (options.experiment.has_parent_path()) make_folders(options.experiment.parent_path());
-  RunOptions checked;
-  checked.experiment = options.experiment;
-  checked.text = text;
-  const CheckReport report = run_check(checked);
-  if (!report.mistakes.empty()) throw InputError(report.mistakes.front());
+  const auto [text, report] = first_right(texts, options);
   write_file_whole(options.experiment, text);
   console.line("Written to " + options.experiment.string());
   if (!size.empty()) console.line(size);
