@@ -33,12 +33,14 @@ FramePair::FramePair(const std::string& frame_a, const std::string& frame_b,
                      const InputLocation& where)
     : a(frame_a), b(frame_b), is_from_body(is_body_frame(a)) {
   const FrameAxes axes = axes_of_frame(lab());
-  const bool is_still = lab().starts_with("LAB") || lab() == "INERTIAL" ||
-                        axes == FrameAxes::J2000 || axes == FrameAxes::of_date;
+  // MCI: inertial about Mars. LVLH_INERTIAL and the like: those of an orbit at one instant.
+  const bool is_still = lab().starts_with("LAB") || lab().ends_with("INERTIAL") ||
+                        lab() == "B1950" || lab() == "MCI" || axes == FrameAxes::J2000 ||
+                        axes == FrameAxes::of_date;
   if (is_body_frame(b) != is_from_body && is_still) return;
   throw InputError(where, "", "the frames " + in_quotes(a) + " and " + in_quotes(b),
                    "one of the body (SC_BODY_1) and one of space: inertial (EME2000, J2000, GCRF, "
-                   "ICRF, TOD, MOD, TEME) or LAB");
+                   "ICRF, TOD, MOD, TEME, B1950, MCI) or LAB");
 }
 
 bool are_axes_of_a(const std::string& frame, const std::string& a, const std::string& b,
