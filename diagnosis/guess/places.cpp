@@ -22,7 +22,8 @@ std::optional<Circle> circle_of(const Recording& recording) {
   }
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const auto& p : points) mean += p / static_cast<double>(points.size());
-  // |p − c|² = R² is linear in c and R² − |c|² (I. Kåsa 1976).
+  // |p − c|² = R² is linear in c and R² − |c|² (I. Kåsa, IEEE Trans. Instrum. Meas. 25, 8 (1976)).
+  // This start has too small a radius for short arcs.
   Mat3 squares = Mat3::Zero();
   Vec3 right = Vec3::Zero();
   for (const auto& p : points) {
@@ -31,11 +32,30 @@ std::optional<Circle> circle_of(const Recording& recording) {
     squares += row * row.transpose();
     right += row * d.squaredNorm();
   }
-  const Vec3 solution = squares.ldlt().solve(right);
-  if (!solution.allFinite()) return std::nullopt;
-  const Eigen::Vector2d offset = solution.head<2>();
-  const double radius_m = std::sqrt(std::max(0.0, solution[2] + offset.squaredNorm()));
-  const Eigen::Vector2d centre = mean + offset;
+  const Vec3 start = squares.ldlt().solve(right);
+  Eigen::Vector2d centre = mean + start.head<2>();
+  double radius_m = std::sqrt(std::max(0.0, start[2] + start.head<2>().squaredNorm()));
+  constexpr int rounds = 20;
+  constexpr double biweight = 4.685;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<double> sizes;
+    for (const auto& p : points) sizes.push_back(std::abs((p - centre).norm() - radius_m));
+    const double reach_m = std::max(biweight * upper_median(sizes) / normal_median, 1e-300);
+    squares.setZero();
+    right.setZero();
+    for (const auto& p : points) {
+      const Eigen::Vector2d d = p - centre;
+      const double off_m = d.norm() - radius_m,
+                   weight = std::pow(std::max(0.0, 1.0 - std::pow(off_m / reach_m, 2)), 2);
+      const Vec3 row(d.x() / d.norm(), d.y() / d.norm(), 1.0);
+      squares += weight * row * row.transpose();
+      right += weight * off_m * row;
+    }
+    const Vec3 step = squares.ldlt().solve(right);
+    if (!step.allFinite()) return std::nullopt;
+    centre += step.head<2>();
+    radius_m += step[2];
+  }
   double square = 0.0, at = 0.0, low = 0.0, high = 0.0, before = NAN;
   std::vector<double> angle_rad;
   for (const auto& p : points) {

@@ -16,8 +16,8 @@ struct Circle {
 };
 
 // The circle on which x_m and y_m lie if they turn back on it at least twice or cover an arc of
-// more than 2 rad. The circle is fitted by linear least squares (I. Kåsa, IEEE Trans. Instrum.
-// Meas. 25, 8 (1976)).
+// more than 2 rad. Its distances from the readings are minimised by a robust regression (Tukey's
+// biweight).
 std::optional<Circle> circle_of(const Recording& recording);
 
 // A harmonic oscillation.

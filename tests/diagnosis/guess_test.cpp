@@ -362,6 +362,28 @@ TEST(Guess, AVideoOfAPendulumShowsItsPivot) {
   }
 }
 
+// A short arc in noise, with one wrong place.
+TEST(Guess, AShortArcHasItsRadius) {
+  constexpr double radius_m = 1.2, interval_s = 1.0 / 30.0;
+  Noise noise(14, 0.002 * radius_m);
+  double mean_y_m = 0.0;
+  constexpr int draws = 20;
+  for (int draw = 0; draw < draws; ++draw) {
+    std::string text = "t_s,x_m,y_m\n";
+    for (int i = 0; i < 400; ++i) {
+      const double t = interval_s * i, angle_rad = 0.25 * std::exp(-0.02 * t) * std::cos(2.8 * t);
+      text += printed("%.5f,%.5f,%.5f\n", t, radius_m * std::sin(angle_rad) + noise(),
+                      -radius_m * std::cos(angle_rad) + noise() + (i == 7 ? 0.03 : 0.0));
+    }
+    const std::string toml = guess_experiment({test_file("arc.csv", text)}, ".");
+    const auto pivot_m = read_recording_options(settings_in(toml).table("recording")).pivot_m;
+    ASSERT_TRUE(pivot_m);
+    mean_y_m += (*pivot_m)[1] / draws;
+  }
+  // The radius of one draw scatters by 1.2 % (from random draws).
+  EXPECT_NEAR(mean_y_m, 0.0, 0.01 * radius_m);
+}
+
 // A straight track is part of any large circle.
 TEST(Guess, ATrackIsNoCircle) {
   Noise noise(10, 1e-3);
