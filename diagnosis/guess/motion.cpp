@@ -469,7 +469,10 @@ void add_drag(TomlDocument& document, const Machine& m) {
 // Adds the spring that pulls back a coordinate that oscillates. A fit that starts without a spring
 // does not find the frequency of many periods.
 void add_spring(TomlDocument& document, const Machine& m) {
-  const std::optional<Oscillation> found = oscillation_of(m.recordings.front());
+  constexpr int x = vector_channels + static_cast<int>(Scalar::position_x);
+  const std::optional<Oscillation> found = oscillation_of(
+      m.recordings.front(),
+      {reading_level(m.runs, x).value_or(0.0), reading_level(m.runs, x + 1).value_or(0.0)});
   if (!found) return;
   const double stiffness_N_m = std::pow(2.0 * pi / found->period_s, 2);
   const Eigen::Vector2d pull_N = stiffness_N_m * found->middle_m;
@@ -480,7 +483,7 @@ void add_spring(TomlDocument& document, const Machine& m) {
   document.set(table, "kind", {"sliding_spring"});
   document.set(table, "stiffness_N_per_m",
                {SettingsNode::Table{{"value", number_node(stiffness_N_m)},
-                                    {"sigma", number_node(0.1 * stiffness_N_m)}}});
+                                    {"sigma", number_node(stiffness_N_m)}}});
   document.set(table, "pull_N.value",
                {SettingsNode::Array{{rounded(pull_N.x())}, {rounded(pull_N.y())}}});
   document.set(table, "pull_N.sigma", {SettingsNode::Array{{largest_N}, {largest_N}}});

@@ -437,6 +437,41 @@ TEST(Guess, AWeightThatOscillatesHangsOnASpring) {
               Not(HasSubstr("sliding_spring")));
 }
 
+// White noise of 2 mm, and a strongly damped oscillation after which the readings rest in noise.
+TEST(Guess, NoiseIsNoSpring) {
+  constexpr double omega_rad_s = 0.7, damping_1_s = 0.09;
+  Noise noise(13, 2e-3);
+  std::string white = "t,x\n", seismometer = white;
+  for (int i = 0; i < 900; ++i) {
+    const double t = 0.1 * i;
+    white += printed("%.1f,%.5f\n", t, noise());
+    seismometer += printed("%.1f,%.5f\n", t,
+                           0.25 * std::exp(-damping_1_s * t) * std::cos(omega_rad_s * t) + noise());
+  }
+  EXPECT_THAT(guess_experiment({test_file("white.csv", white)}, "."),
+              Not(HasSubstr("sliding_spring")));
+  const Settings guessed =
+      settings_in(guess_experiment({test_file("rests.csv", seismometer)}, "."));
+  const std::vector<Settings> effects = guessed.tables("disturbance");
+  ASSERT_EQ(effects.size(), 1U);
+  const double stiffness = omega_rad_s * omega_rad_s + damping_1_s * damping_1_s;
+  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, 0.1 * stiffness);
+}
+
+// Counts of an encoder. At 14.5 counts per reading, the rounding errors alternate.
+TEST(Guess, AnEncoderHasTheNoiseOfItsStep) {
+  constexpr double step_rev = 1e-3;
+  std::string text = "time (s),angle (revolutions)\n";
+  for (int i = 0; i < 150; ++i) {
+    const double counts = 14.49 * (i - 12.0 * (1.0 - std::exp(-i / 12.0)));
+    text += printed("%.4f,%.3f\n", 0.01 * i, step_rev * std::round(counts));
+  }
+  const Settings guessed = settings_in(guess_experiment({test_file("encoder.csv", text)}, "."));
+  constexpr double step_rad = step_rev * 2.0 * pi;
+  EXPECT_NEAR(guessed.table("sensors").table("angle").number("noise_arcsec"),
+              step_rad / std::sqrt(12.0), 0.003 * step_rad);
+}
+
 // The turning points of a swing alternate in sign: their differences contain no noise.
 TEST(Guess, TurningPointsDetermineNoNoise) {
   std::string text = "t_s,angle_rad\n";
@@ -465,6 +500,22 @@ TEST(Guess, ATorsionPendulumTurnsAboutAnUprightAxis) {
                 AllOf(HasSubstr("axis = \"z\""), HasSubstr("in proportion to the angle")))
         << "every " << interval_s << " s";
   }
+}
+
+// A spring beyond half a turn, and a spring and a pendulum of which three periods were recorded.
+TEST(Guess, LargeAndShortSwingsShowTheirLaw) {
+  const auto guess = [](const std::vector<double>& angle_rad) {
+    return guess_experiment({test_file("swing.csv", angles_text(angle_rad, 0.05))}, ".");
+  };
+  for (const double most_rad : {4.2, 2.6}) {
+    std::vector<double> angle_rad;
+    for (int i = 0; i < 90; ++i) {
+      const double t = 0.05 * i;
+      angle_rad.push_back(0.1 + most_rad * std::exp(-0.1 * t) * std::cos(4.5 * t));
+    }
+    EXPECT_THAT(guess(angle_rad), HasSubstr("axis = \"z\"")) << most_rad;
+  }
+  EXPECT_THAT(guess(Swing{25.0, 0.0, 0.2, 0.0}.from(2.6, 0.05, 90)), HasSubstr("axis = \"x\""));
 }
 
 // Three rates of a telephone on a pendulum: those across the axis are small, and none has a mean.
