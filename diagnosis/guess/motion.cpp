@@ -438,34 +438,6 @@ void require_rows(const fs::path& path, const std::vector<GuessedColumn>& column
                    "at least " + std::to_string(fewest_readings) + " readings");
 }
 
-// Adds a drag that slows the rate as recorded, as a start from which other torques are
-// distinguishable.
-void add_drag(TomlDocument& document, const Machine& m) {
-  Eigen::Index axis = 2;
-  m.platform.axis.maxCoeff(&axis);
-  double slowed = 0.0, sum = 0.0;
-  for (const Observation& seen : m.runs) {
-    if (!angles_of_swing(seen, m.platform.axis).row.empty()) return;
-    std::vector<double> rate;
-    for (size_t i = 0; i < seen.blocks(); ++i) {
-      if (seen.gyro_rows[i][axis] > 0.0) rate.push_back(std::abs(seen.gyro_rad_s[i][axis]));
-    }
-    if (rate.size() < 2) continue;
-    const double mean = 0.5 * (rate.front() + rate.back());
-    if (mean > 0.0) slowed += (rate.front() - rate.back()) / mean;
-    sum += seen.duration_s();
-  }
-  const double coefficient_1_s = sum > 0.0 ? slowed / sum : 0.0;
-  if (!(slowed > 0.2)) return;
-  document.comment(
-      "CONFIRM: the rate decreases, so a linear drag is assumed; diagnose searches the rest.");
-  SettingsNode::Table& table = document.append("disturbance");
-  document.set(table, "kind", {"bearing_drag"});
-  document.set(table, "coefficient_N_m_s",
-               {SettingsNode::Table{{"value", number_node(coefficient_1_s)},
-                                    {"sigma", number_node(10.0 * coefficient_1_s)}}});
-}
-
 // Adds the spring that pulls back a coordinate that oscillates. A fit that starts without a spring
 // does not find the frequency of many periods.
 void add_spring(TomlDocument& document, const Machine& m) {
@@ -550,7 +522,6 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
   add_sequence(document, m);
   SettingsNode::Table& platform = add_machine(document, m);
   if (m.platform.topology == Topology::free) add_inertia(document, platform, m.runs);
-  if (m.platform.turns_about_one_axis() && !m.platform.slides()) add_drag(document, m);
   if (m.platform.slides()) add_spring(document, m);
   const char *const rate_noise = "gyro.noise_rad_s", *const angle_noise = "angle.noise_arcsec";
   const bool has_gyro = m.runs.front().has_gyro, has_angle = m.runs.front().has_some_attitude();

@@ -295,7 +295,7 @@ TEST(Guess, AWheelIsDiagnosedByItsGuess) {
   const std::string toml = guess_experiment({file}, file.parent_path());
   EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"one_axis\""),
                           HasSubstr("rate_deg_s = \"Angular speed (deg/s)\""),
-                          HasSubstr("Unused columns: Battery")));
+                          HasSubstr("Unused columns: Battery"), Not(HasSubstr("[[disturbance]]"))));
   const Settings root = settings_in(toml);
   const Recording recording = read_recording(file, read_recording_options(root.table("recording")));
   const Diagnosis d = diagnose(read_attitude_model(root), {{"wheel.csv", recording}}, {});
