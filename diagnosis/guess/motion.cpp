@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "core/numerics/linear.h"
 #include "core/text/format.h"
+#include "diagnosis/guess/file_head.h"
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/guess/places.h"
 
@@ -406,26 +407,34 @@ void require_motion(const fs::path& path, const std::vector<GuessedColumn>& colu
   const bool has_time =
       reading.rate_Hz || any([](const GuessedColumn& c) { return c.channel.starts_with("t_"); });
   if (has_time && has_motion(columns)) return;
-  const bool are_several =
-      any([](const GuessedColumn& c) { return c.channel.empty() && !c.because.empty(); });
   std::string found = "no time among ",
               expected =
                   counts ? "frames per second beside the frames: --rate-Hz 30"
                          : "a time with its unit, such as t_s or \"Time (ms)\", or the rows per "
                            "second: --rate-Hz 100";
-  if (has_time && are_several) {
-    found = "several angles or rates among ";
-    expected = "a name for the one that is meant, such as angle_deg or rate_rpm";
+  const auto shared = [](const GuessedColumn& c) { return !c.shared.empty(); };
+  const auto first = std::ranges::find_if(columns, shared);
+  if (has_time && first != columns.end()) {
+    found = "several columns that may be " + first->shared + ": ";
+    size_t place = 0;
+    const std::string names = joined_text(columns, ",", [&](const GuessedColumn& c) {
+      ++place;
+      return &c == &*first        ? c.shared
+             : !c.channel.empty() ? c.channel
+                                  : "column_" + std::to_string(place);
+    });
+    expected = "one body, with one of them; " + command_with_names(path, names);
   } else if (has_time) {
     found = "no angle, rate or coordinate among ";
     expected =
         "a quantity with its unit, such as \"angle (deg)\", rate_rpm, gyro_x_rad_s, or x_m and y_m";
   }
   throw InputError({path.string()}, "header", found + names_in(path, reading.header),
-                   counts ? expected
-                          : expected +
-                                "; of a curve of a module one voltage and one current (voltage_V, "
-                                "current_A)");
+                   counts || first != columns.end()
+                       ? expected
+                       : expected +
+                             "; of a curve of a module one voltage and one current (voltage_V, "
+                             "current_A)");
 }
 
 void require_rows(const fs::path& path, const std::vector<GuessedColumn>& columns,
