@@ -4,10 +4,38 @@
 #include <cmath>
 
 #include "attitude/estimation/axis_readings.h"
+#include "core/constants.h"
 #include "core/numerics/linear.h"
 #include "core/numerics/median.h"
 
 namespace photorque {
+
+std::vector<Passage> passages(const std::vector<double>& time_s, const std::vector<double>& values,
+                              double least) {
+  constexpr double far = 0.2;
+  double nearby = 0.0, extreme = 0.0;
+  for (const double value : values) nearby = std::max(nearby, std::abs(value));
+  std::vector<Passage> all;
+  int side = 0;
+  size_t before = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    const double value = values[i], limit = std::max(far * nearby, least);
+    const int now = value > limit ? 1 : value < -limit ? -1 : 0;
+    if (now != 0 && now == -side) {
+      const double first = values[before], second = values[before + 1];
+      const double part = first / (first - second);
+      all.push_back(
+          {before, time_s[before] + part * (time_s[before + 1] - time_s[before]), extreme});
+      nearby = extreme;
+      extreme = 0.0;
+    }
+    if (now != 0) side = now;
+    if (value * side > 0.0) before = i;
+    extreme = std::max(extreme, std::abs(value));
+  }
+  return all;
+}
+
 namespace {
 
 // Removes the rest at the end: the readings from which on the angle stays within 1 % of the range
@@ -23,18 +51,21 @@ void leave_out_rest(AxisReadings& read) {
   read.value.resize(count);
 }
 
+std::vector<Passage> passages_through_median(const AxisReadings& read) {
+  const double middle = upper_median(read.value);
+  std::vector<double> deviation;
+  for (const double value : read.value) deviation.push_back(value - middle);
+  return passages(read.time_s, deviation, 0.0);
+}
+
 // Twice the median time between passages through the median angle; 0 if there are fewer than six.
 double period_s(const AxisReadings& read) {
   constexpr size_t fewest_passages = 6;
-  const double middle_rad = upper_median(read.value);
+  const std::vector<Passage> all = passages_through_median(read);
+  if (all.size() < fewest_passages) return 0.0;
   std::vector<double> between_s;
-  double before_s = read.time_s.front();
-  for (size_t i = 1; i < read.row.size(); ++i) {
-    if ((read.value[i - 1] < middle_rad) == (read.value[i] < middle_rad)) continue;
-    between_s.push_back(read.time_s[i] - before_s);
-    before_s = read.time_s[i];
-  }
-  return between_s.size() < fewest_passages ? 0.0 : 2.0 * upper_median(between_s);
+  for (size_t i = 1; i < all.size(); ++i) between_s.push_back(all[i].time_s - all[i - 1].time_s);
+  return 2.0 * upper_median(between_s);
 }
 
 // Angle, rate and acceleration at the centres of local cubics; empty for fewer than three periods.
@@ -148,34 +179,14 @@ struct TurningPoint {
   double time_s = 0.0, angle_rad = 0.0;
 };
 
-// Times at which the rates pass zero between at least a fifth of the largest rate nearby on one
-// side and on the other.
 std::vector<TurningPoint> turning_points(const AxisReadings& rates,
                                          const std::vector<double>& turned_rad) {
-  constexpr double far = 0.2, least_of_largest = 0.02;
-  double largest = 0.0, nearby = 0.0;
+  constexpr double least_of_largest = 0.02;
+  double largest = 0.0;
   for (const double rate : rates.value) largest = std::max(largest, std::abs(rate));
   std::vector<TurningPoint> points;
-  int side = 0;
-  size_t crossed = 0;  // the last reading on the side before
-  nearby = largest;
-  double peak = 0.0;
-  for (size_t i = 0; i < rates.value.size(); ++i) {
-    const double rate = rates.value[i];
-    const double limit = std::max(far * nearby, least_of_largest * largest);
-    const int now = rate > limit ? 1 : rate < -limit ? -1 : 0;
-    if (side != 0 && rate * side > 0.0) crossed = i;
-    if (now == 0 || now == side) {
-      peak = std::max(peak, std::abs(rate));
-      if (side == 0) side = now;
-      continue;
-    }
-    if (side == -now) {
-      points.push_back({rates.time_s[crossed], turned_rad[crossed]});
-      nearby = peak;
-    }
-    peak = std::abs(rate);
-    side = now;
+  for (const Passage& p : passages(rates.time_s, rates.value, least_of_largest * largest)) {
+    points.push_back({rates.time_s[p.before], turned_rad[p.before]});
   }
   return points;
 }
@@ -253,7 +264,7 @@ namespace {
 
 // Angles of a swing in the rows, without the rest at the end; empty if there are few.
 AxisReadings swing_of(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
-  constexpr size_t fewest_readings = 60;
+  constexpr size_t fewest_readings = 40;
   AxisReadings read = rows.has_some_attitude() ? angles_about(rows, axis, first, last)
                                                : angles_of_swing(rows, axis);
   if (read.row.size() >= fewest_readings) leave_out_rest(read);
@@ -293,21 +304,11 @@ struct Period {
 };
 
 std::vector<Period> periods_of(const AxisReadings& read) {
-  const double middle_rad = upper_median(read.value);
-  std::vector<double> passed_s, extreme_rad;  // largest angle before each passage
-  double farthest_rad = 0.0;
-  for (size_t i = 1; i < read.row.size(); ++i) {
-    const double before = read.value[i - 1] - middle_rad, now = read.value[i] - middle_rad;
-    farthest_rad = std::max(farthest_rad, std::abs(before));
-    if ((before < 0.0) == (now < 0.0)) continue;
-    passed_s.push_back(read.time_s[i - 1] +
-                       (read.time_s[i] - read.time_s[i - 1]) * before / (before - now));
-    extreme_rad.push_back(farthest_rad);
-    farthest_rad = 0.0;
-  }
+  const std::vector<Passage> passed = passages_through_median(read);
   std::vector<Period> all;
-  for (size_t i = 2; i < passed_s.size(); ++i) {
-    all.push_back({passed_s[i] - passed_s[i - 2], 0.5 * (extreme_rad[i - 1] + extreme_rad[i])});
+  for (size_t i = 2; i < passed.size(); ++i) {
+    all.push_back({passed[i].time_s - passed[i - 2].time_s,
+                   0.5 * (passed[i - 1].extreme + passed[i].extreme)});
   }
   return all;
 }
@@ -316,25 +317,26 @@ std::vector<Period> periods_of(const AxisReadings& read) {
 // spring is constant. Driving and damping torques and a coarse resolution of the readings have
 // little effect on it.
 RestoringLaw law_of_periods(const AxisReadings& read) {
-  constexpr size_t fewest = 8;
-  constexpr double largest_rad = 3.0;
+  constexpr size_t fewest = 2, many = 8;
   const std::vector<Period> periods = periods_of(read);
   if (periods.size() < fewest) return RestoringLaw::unclear;
   std::vector<double> of_spring, of_weight;
   for (const Period& p : periods) {
-    if (p.amplitude_rad > largest_rad) return RestoringLaw::unclear;
+    // A weight that turns back on both sides lies between the highest positions, a turn apart.
+    if (p.amplitude_rad > pi) return RestoringLaw::spring;
     of_spring.push_back(std::log(p.period_s));
     of_weight.push_back(of_spring.back() + std::log(agm(1.0, std::cos(0.5 * p.amplitude_rad))));
   }
-  const auto scatter = [](const std::vector<double>& values) {
+  // The medians of many periods exclude those in which the body rests or is pushed.
+  const bool are_many = periods.size() >= many;
+  const auto scatter = [are_many](const std::vector<double>& values) {
     const double middle = upper_median(values);
     std::vector<double> sizes;
     for (const double value : values) sizes.push_back(std::abs(value - middle));
-    return upper_median(sizes);
+    return are_many ? upper_median(sizes) : *std::ranges::max_element(sizes);
   };
-  // The medians exclude periods in which the body rests or is pushed.
-  constexpr double clearly = 2.0;
-  const double spring = scatter(of_spring), weight = scatter(of_weight);
+  const double clearly = are_many ? 2.0 : 8.0, spring = scatter(of_spring),
+               weight = scatter(of_weight);
   return clearly * spring < weight   ? RestoringLaw::spring
          : clearly * weight < spring ? RestoringLaw::weight
                                      : RestoringLaw::unclear;

@@ -1,9 +1,22 @@
 // A body that swings about one axis: the time of its release, and the law of its restoring torque.
 #pragma once
 
+#include <vector>
+
 #include "attitude/estimation/axis_readings.h"
 
 namespace photorque {
+
+// A passage of a series through zero.
+struct Passage {
+  size_t before = 0;     // the last value on the side that is left
+  double time_s = 0.0;   // interpolated
+  double extreme = 0.0;  // largest magnitude since the passage before
+};
+// Passages between values of at least a fifth of the extreme before, and at least `least`, on one
+// side and on the other. Noise near zero and at rest does not count.
+std::vector<Passage> passages(const std::vector<double>& time_s, const std::vector<double>& values,
+                              double least);
 
 // First of the rows [first, last) from which on the angle about `axis` swings freely. Before it,
 // for example, a hand sets the body swinging.
@@ -33,13 +46,14 @@ bool swings(const std::vector<Observation>& runs, const Vec3& axis);
 // proportional to the sine of the angle from the rest position. The torque of a spring or a twisted
 // line is proportional to the angle.
 //
-// The result is the law under which the periods depend on the amplitudes with half the scatter of
-// the other law. If neither does, and there are 28 readings per period, each law plus dry, viscous
-// and quadratic friction is fitted to the rates of local cubics (integrated over time). The law
-// with the smaller residual is chosen if it reduces χ² by a tenth and by 16, for the number of
-// independent residuals that their correlation leaves. `unclear` for small swings, for which both
-// laws are equivalent, and for too few readings. Without an angle, those of angles_of_swing() are
-// used.
+// A swing over more than a turn between turning points is that of a spring. Otherwise, the result
+// is the law under which the periods depend on the amplitudes with half the scatter of the other
+// law, or with an eighth for two to seven periods. If neither does, and there are 28 readings per
+// period, each law plus dry, viscous and quadratic friction is fitted to the rates of local cubics
+// (integrated over time). The law with the smaller residual is chosen if it reduces χ² by a tenth
+// and by 16, for the number of independent residuals that their correlation leaves. `unclear` for
+// small swings, for which both laws are equivalent, and for too few readings. Without an angle,
+// those of angles_of_swing() are used.
 enum class RestoringLaw { unclear, weight, spring };
 RestoringLaw restoring_law(const Observation& rows, const Vec3& axis);
 

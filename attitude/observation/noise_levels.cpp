@@ -141,8 +141,17 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
   // motion with fewer than three readings per period, which hides the noise.
   constexpr double of_spread = 1.3;
   if (level * level * readings > of_spread * of_spread * squares) return std::nullopt;
-  const double step = steps.empty() ? 0.0 : *std::min_element(steps.begin(), steps.end());
-  const double least = std::max(level, step / std::sqrt(12.0));
+  const double step = steps.empty() ? 0.0 : *std::min_element(steps.begin(), steps.end()),
+               rounding = step / std::sqrt(12.0);
+  // Third differences of rounding errors are at most four steps, also where the errors alternate.
+  constexpr double most_steps = 4.5, beyond = 0.01;
+  const double most = most_steps * step / std::sqrt(20.0);
+  const auto larger =
+      std::ranges::count_if(sizes[lowest_order], [=](double d) { return d > most; });
+  if (static_cast<double>(larger) <= beyond * static_cast<double>(sizes[lowest_order].size())) {
+    level = 0.0;
+  }
+  const double least = std::max(level, rounding);
   if (!(least > 0.0)) return std::nullopt;
   return least;
 }

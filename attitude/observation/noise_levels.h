@@ -14,9 +14,10 @@ namespace photorque {
 // Standard deviation of one reading of a channel (Observation::rows_of), for channels that no other
 // instrument checks. It follows from divided third differences of neighbouring readings, which
 // smooth motion hardly affects, even for unequal steps. Higher orders, up to six, are used while
-// each reduces the result to less than 0.7. The result is at least the noise of the digitisation
-// steps. Rough motion counts as noise. Empty if there are fewer than ten differences, or if the
-// result is higher than the scatter of the readings, because of too few readings per period.
+// each reduces the result to less than 0.7. The result is at least the noise of the digitisation,
+// 1/√12 of a step. It equals this noise if the third differences are those of rounded values. Rough
+// motion counts as noise. Empty if there are fewer than ten differences, or if the result is higher
+// than the scatter of the readings, because of too few readings per period.
 std::optional<double> reading_level(const std::vector<Observation>& runs, int channel);
 
 // The standard deviation of one reading, and the standard error of its logarithm.

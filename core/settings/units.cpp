@@ -48,6 +48,7 @@ constexpr Unit units[] = {
     {"deg", "angle", degree_rad},
     {"rad", "angle", 1.0},
     {"mrad", "angle", 1e-3},
+    {"rev", "angle", 2.0 * pi},
     {"arcmin", "angle", degree_rad / 60},
     {"arcsec", "angle", arcsecond_rad},
     {"km", "length", 1e3},

@@ -10,8 +10,14 @@
 #include "core/settings/settings.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
+#include "diagnosis/guess/header.h"
 
 namespace photorque {
+
+std::string command_with_names(const std::filesystem::path& path, const std::string& names) {
+  return "name the columns: photorque diagnose --guess " + shell_word(path.string()) +
+         " --columns " + names + " (write what they are)";
+}
 
 // A clock with large integer steps does not count in seconds but in milliseconds or microseconds.
 std::string clock_unit(const FileHead& head, size_t column) {
@@ -63,6 +69,19 @@ std::vector<NumberedLine> first_lines(const std::filesystem::path& path,
   return first;
 }
 
+// The cells of a line of units: "s, m, m"; empty for another line.
+std::vector<std::string> units_in(const std::vector<std::string_view>& cells) {
+  std::vector<std::string> units;
+  bool any = false;
+  for (const std::string_view cell : cells) {
+    units.push_back(header_cell_text(cell));
+    if (trimmed(units.back()).empty()) continue;
+    if (!unit_written(units.back())) return {};
+    any = true;
+  }
+  return any ? units : std::vector<std::string>();
+}
+
 // The first table with this separator. It has no column names if the line above it has a different
 // number of cells.
 std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char separator,
@@ -80,6 +99,15 @@ std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char se
     head.names_above = i > 0 ? before.size() : 0;
     const size_t width = cells.size();
     if (i > 0 && before.size() == width) head.header.assign(before.begin(), before.end());
+    if (i > 1 && !head.header.empty()) {
+      const std::vector<std::string> units = units_in(before);
+      split_cells(lines[i - 2].text, separator, cells);
+      if (!units.empty() && cells.size() == width && units_in(cells).empty()) {
+        head.header.assign(cells.begin(), cells.end());
+        head.units = units;
+        head.line = static_cast<int>(lines[i - 2].number);
+      }
+    }
     for (; i < lines.size(); ++i) {
       split_cells(lines[i].text, separator, cells);
       const auto row = numbers_of(cells, separator, fewest_cells);
@@ -117,12 +145,6 @@ std::string proposed_names(const FileHead& table) {
     }
   }
   return names;
-}
-
-// The command that names the columns of a file without a header.
-std::string command_with_names(const std::filesystem::path& path, const std::string& names) {
-  return "name the columns: photorque diagnose --guess " + shell_word(path.string()) +
-         " --columns " + names + " (write what they are)";
 }
 
 InputError without_header(const std::filesystem::path& path, const FileHead& table) {

@@ -45,6 +45,8 @@ struct GuessedColumn {
   bool is_sure = true;  // stated by the file: the name of the channel, or its unit
   // The assumption, if not sure; "... the next column" follows.
   std::string because = {};
+  // The channel that it shares with other columns, by its unit alone; `channel` is then empty.
+  std::string shared = {};
 };
 
 // Columns of a CSV file. Its header is `header` or the last line before the first row of numbers

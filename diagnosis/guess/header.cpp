@@ -123,7 +123,8 @@ constexpr Spelling angles[] = {
     {"mrad", "mrad milliradian milliradians"},
     {"deg", "deg degs degree degrees grad grados grado gradi graus grau degre degres"},
     {"arcsec", "arcsec arcsecs arcsecond arcseconds bogensekunde bogensekunden"},
-    {"arcmin", "arcmin arcmins arcminute arcminutes bogenminute bogenminuten"}};
+    {"arcmin", "arcmin arcmins arcminute arcminutes bogenminute bogenminuten"},
+    {"rev", "rev revs revolution revolutions turn turns umdrehung umdrehungen vuelta vueltas"}};
 
 constexpr Spelling lengths[] = {
     {"m", "m meter meters metre metres metro metros metri"},
@@ -142,7 +143,7 @@ constexpr Spelling turns[] = {
 std::optional<HeaderUnit> ratio(const std::string& above, const std::string& below) {
   const std::string time = spelled(below, times), angle = spelled(above, angles);
   if (time.empty()) return std::nullopt;
-  if (!angle.empty()) {
+  if (!angle.empty() && angle != "rev") {
     const bool is_usual = time == "s" && (angle == "rad" || angle == "deg");
     return HeaderUnit{is_usual ? angle + "_s" : "", "angular rate"};
   }

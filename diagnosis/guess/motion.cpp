@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "core/numerics/linear.h"
 #include "core/text/format.h"
+#include "diagnosis/guess/file_head.h"
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/guess/places.h"
 
@@ -410,26 +411,34 @@ void require_motion(const fs::path& path, const std::vector<GuessedColumn>& colu
   const bool has_time =
       reading.rate_Hz || any([](const GuessedColumn& c) { return c.channel.starts_with("t_"); });
   if (has_time && has_motion(columns)) return;
-  const bool are_several =
-      any([](const GuessedColumn& c) { return c.channel.empty() && !c.because.empty(); });
   std::string found = "no time among ",
               expected =
                   counts ? "frames per second beside the frames: --rate-Hz 30"
                          : "a time with its unit, such as t_s or \"Time (ms)\", or the rows per "
                            "second: --rate-Hz 100";
-  if (has_time && are_several) {
-    found = "several angles or rates among ";
-    expected = "a name for the one that is meant, such as angle_deg or rate_rpm";
+  const auto shared = [](const GuessedColumn& c) { return !c.shared.empty(); };
+  const auto first = std::ranges::find_if(columns, shared);
+  if (has_time && first != columns.end()) {
+    found = "several columns that may be " + first->shared + ": ";
+    size_t place = 0;
+    const std::string names = joined_text(columns, ",", [&](const GuessedColumn& c) {
+      ++place;
+      return &c == &*first        ? c.shared
+             : !c.channel.empty() ? c.channel
+                                  : "column_" + std::to_string(place);
+    });
+    expected = "one body, with one of them; " + command_with_names(path, names);
   } else if (has_time) {
     found = "no angle, rate or coordinate among ";
     expected =
         "a quantity with its unit, such as \"angle (deg)\", rate_rpm, gyro_x_rad_s, or x_m and y_m";
   }
   throw InputError({path.string()}, "header", found + names_in(path, reading.header),
-                   counts ? expected
-                          : expected +
-                                "; of a curve of a module one voltage and one current (voltage_V, "
-                                "current_A)");
+                   counts || first != columns.end()
+                       ? expected
+                       : expected +
+                             "; of a curve of a module one voltage and one current (voltage_V, "
+                             "current_A)");
 }
 
 void require_rows(const fs::path& path, const std::vector<GuessedColumn>& columns,
@@ -442,38 +451,13 @@ void require_rows(const fs::path& path, const std::vector<GuessedColumn>& column
                    "at least " + std::to_string(fewest_readings) + " readings");
 }
 
-// Adds a drag that slows the rate as recorded, as a start from which other torques are
-// distinguishable.
-void add_drag(TomlDocument& document, const Machine& m) {
-  Eigen::Index axis = 2;
-  m.platform.axis.maxCoeff(&axis);
-  double slowed = 0.0, sum = 0.0;
-  for (const Observation& seen : m.runs) {
-    if (!angles_of_swing(seen, m.platform.axis).row.empty()) return;
-    std::vector<double> rate;
-    for (size_t i = 0; i < seen.blocks(); ++i) {
-      if (seen.gyro_rows[i][axis] > 0.0) rate.push_back(std::abs(seen.gyro_rad_s[i][axis]));
-    }
-    if (rate.size() < 2) continue;
-    const double mean = 0.5 * (rate.front() + rate.back());
-    if (mean > 0.0) slowed += (rate.front() - rate.back()) / mean;
-    sum += seen.duration_s();
-  }
-  const double coefficient_1_s = sum > 0.0 ? slowed / sum : 0.0;
-  if (!(slowed > 0.2)) return;
-  document.comment(
-      "CONFIRM: the rate decreases, so a linear drag is assumed; diagnose searches the rest.");
-  SettingsNode::Table& table = document.append("disturbance");
-  document.set(table, "kind", {"bearing_drag"});
-  document.set(table, "coefficient_N_m_s",
-               {SettingsNode::Table{{"value", number_node(coefficient_1_s)},
-                                    {"sigma", number_node(10.0 * coefficient_1_s)}}});
-}
-
 // Adds the spring that pulls back a coordinate that oscillates. A fit that starts without a spring
 // does not find the frequency of many periods.
 void add_spring(TomlDocument& document, const Machine& m) {
-  const std::optional<Oscillation> found = oscillation_of(m.recordings.front());
+  constexpr int x = vector_channels + static_cast<int>(Scalar::position_x);
+  const std::optional<Oscillation> found = oscillation_of(
+      m.recordings.front(),
+      {reading_level(m.runs, x).value_or(0.0), reading_level(m.runs, x + 1).value_or(0.0)});
   if (!found) return;
   const double stiffness_N_m = std::pow(2.0 * pi / found->period_s, 2);
   const Eigen::Vector2d pull_N = stiffness_N_m * found->middle_m;
@@ -484,7 +468,7 @@ void add_spring(TomlDocument& document, const Machine& m) {
   document.set(table, "kind", {"sliding_spring"});
   document.set(table, "stiffness_N_per_m",
                {SettingsNode::Table{{"value", number_node(stiffness_N_m)},
-                                    {"sigma", number_node(0.1 * stiffness_N_m)}}});
+                                    {"sigma", number_node(stiffness_N_m)}}});
   document.set(table, "pull_N.value",
                {SettingsNode::Array{{rounded(pull_N.x())}, {rounded(pull_N.y())}}});
   document.set(table, "pull_N.sigma", {SettingsNode::Array{{largest_N}, {largest_N}}});
@@ -551,7 +535,6 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
   add_sequence(document, m);
   SettingsNode::Table& platform = add_machine(document, m);
   if (m.platform.topology == Topology::free) add_inertia(document, platform, m.runs);
-  if (m.platform.turns_about_one_axis() && !m.platform.slides()) add_drag(document, m);
   if (m.platform.slides()) add_spring(document, m);
   const char *const rate_noise = "gyro.noise_rad_s", *const angle_noise = "angle.noise_arcsec";
   const bool has_gyro = m.runs.front().has_gyro, has_angle = m.runs.front().has_some_attitude();

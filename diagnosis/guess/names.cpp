@@ -234,7 +234,8 @@ std::string quaternion_of(const std::vector<std::string>& words) {
 // Accepted units of a quantity, for messages.
 std::string units_for(const std::string& dimension) {
   return dimension == "time"           ? "s, ms, µs, min or h"
-         : dimension == "angle"        ? "rad, mrad, deg (°), arcmin or arcsec"
+         : dimension == "angle"        ? "rad, mrad, deg (°), arcmin, arcsec or rev (the "
+                                         "counts of an encoder, divided by those of a turn)"
          : dimension == "angular rate" ? "rad/s, deg/s (°/s), rpm (1/min, U/min, tr/min) or rev/s"
          : dimension == "length"       ? "m, cm or mm"
          : dimension == "speed"        ? "m/s, cm/s, mm/s, km/h or mph"
@@ -264,6 +265,15 @@ std::string fitting_unit(const HeaderCell& cell, const std::string& dimension, c
                  words.any_is({"n"})
              ? "rev_s"
              : "";
+}
+
+// A cell of the header, with the unit that a line of units states below it.
+HeaderCell cell_of(const FileHead& head, size_t place) {
+  HeaderCell cell = read_header_cell(head.header[place]);
+  if (cell.unit || head.units.empty()) return cell;
+  cell.unit_text = head.units[place];
+  cell.unit = unit_written(cell.unit_text);
+  return cell;
 }
 
 // A column with its guess. If its name suggests a quantity of motion but its unit does not fit, the
@@ -418,12 +428,10 @@ void keep_first_of_each(std::vector<ReadColumn>& columns) {
       other = other || (same && (columns[i].by_unit ? true : k < i && !columns[k].by_unit));
     }
     if (other && !columns[i].by_unit) channel.clear();
-    if (other && columns[i].by_unit) columns[i].wrong_unit = "several";
+    if (other && columns[i].by_unit) columns[i].guess.shared = channel;
   }
   for (ReadColumn& column : columns) {
-    if (column.wrong_unit != "several") continue;
-    column.guess.channel.clear();
-    column.wrong_unit.clear();
+    if (!column.guess.shared.empty()) column.guess.channel.clear();
   }
 }
 
@@ -450,8 +458,8 @@ void read_lone_wheel(std::vector<ReadColumn>& columns) {
 std::vector<ReadColumn> read_columns(const FileHead& head) {
   std::vector<HeaderCell> cells;
   std::vector<Words> words;
-  for (const std::string& in_file : head.header) {
-    cells.push_back(read_header_cell(in_file));
+  for (size_t place = 0; place < head.header.size(); ++place) {
+    cells.push_back(cell_of(head, place));
     words.push_back({cells.back().words});
   }
   std::vector<ReadColumn> columns;
@@ -523,7 +531,7 @@ GuessedCurve guess_curve(const std::filesystem::path& path,
   const FileHead head = head_of(path, header);
   std::vector<HeaderCell> cells;
   for (size_t place = 0; place < head.header.size(); ++place) {
-    cells.push_back(read_header_cell(head.header[place]));
+    cells.push_back(cell_of(head, place));
     const HeaderCell& cell = cells.back();
     const Words words{cell.words.empty() ? words_of_header(head.header[place]) : cell.words};
     if (is_of_another_kind(words)) continue;

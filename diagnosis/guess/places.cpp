@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "attitude/estimation/swing.h"
 #include "core/constants.h"
 #include "core/numerics/median.h"
 #include "core/transform.h"
@@ -22,7 +23,8 @@ std::optional<Circle> circle_of(const Recording& recording) {
   }
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const auto& p : points) mean += p / static_cast<double>(points.size());
-  // |p − c|² = R² is linear in c and R² − |c|² (I. Kåsa 1976).
+  // |p − c|² = R² is linear in c and R² − |c|² (I. Kåsa, IEEE Trans. Instrum. Meas. 25, 8 (1976)).
+  // This start has too small a radius for short arcs.
   Mat3 squares = Mat3::Zero();
   Vec3 right = Vec3::Zero();
   for (const auto& p : points) {
@@ -31,11 +33,30 @@ std::optional<Circle> circle_of(const Recording& recording) {
     squares += row * row.transpose();
     right += row * d.squaredNorm();
   }
-  const Vec3 solution = squares.ldlt().solve(right);
-  if (!solution.allFinite()) return std::nullopt;
-  const Eigen::Vector2d offset = solution.head<2>();
-  const double radius_m = std::sqrt(std::max(0.0, solution[2] + offset.squaredNorm()));
-  const Eigen::Vector2d centre = mean + offset;
+  const Vec3 start = squares.ldlt().solve(right);
+  Eigen::Vector2d centre = mean + start.head<2>();
+  double radius_m = std::sqrt(std::max(0.0, start[2] + start.head<2>().squaredNorm()));
+  constexpr int rounds = 20;
+  constexpr double biweight = 4.685;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<double> sizes;
+    for (const auto& p : points) sizes.push_back(std::abs((p - centre).norm() - radius_m));
+    const double reach_m = std::max(biweight * upper_median(sizes) / normal_median, 1e-300);
+    squares.setZero();
+    right.setZero();
+    for (const auto& p : points) {
+      const Eigen::Vector2d d = p - centre;
+      const double off_m = d.norm() - radius_m,
+                   weight = std::pow(std::max(0.0, 1.0 - std::pow(off_m / reach_m, 2)), 2);
+      const Vec3 row(d.x() / d.norm(), d.y() / d.norm(), 1.0);
+      squares += weight * row * row.transpose();
+      right += weight * off_m * row;
+    }
+    const Vec3 step = squares.ldlt().solve(right);
+    if (!step.allFinite()) return std::nullopt;
+    centre += step.head<2>();
+    radius_m += step[2];
+  }
   double square = 0.0, at = 0.0, low = 0.0, high = 0.0, before = NAN;
   std::vector<double> angle_rad;
   for (const auto& p : points) {
@@ -73,9 +94,10 @@ std::optional<Circle> circle_of(const Recording& recording) {
   return Circle{centre, radius_m, relative};
 }
 
-std::optional<Oscillation> oscillation_of(const Recording& recording) {
+std::optional<Oscillation> oscillation_of(const Recording& recording,
+                                          const Eigen::Vector2d& noise_m) {
   constexpr size_t fewest_half_periods = 6;
-  constexpr double least_fullness = 0.57;
+  constexpr double least_fullness = 0.58, noise_levels = 3.0, fewest_readings = 3.0, regular = 0.65;
   Oscillation found;
   for (Eigen::Index axis = 0; axis < 2; ++axis) {
     const Channel* coordinate = recording.find(axis == 0 ? "x_m" : "y_m");
@@ -87,34 +109,37 @@ std::optional<Oscillation> oscillation_of(const Recording& recording) {
       value_m.push_back(coordinate->values[i]);
     }
     if (value_m.empty()) continue;
-    const double middle_m = upper_median(value_m);
-    found.middle_m[axis] = middle_m;
-    double farthest_m = 0.0, most_m = 0.0, sum_m = 0.0;
-    std::vector<double> between_s, fullness;
-    size_t before = 0;
-    for (size_t i = 1; i < value_m.size(); ++i) {
-      if ((value_m[i - 1] < middle_m) != (value_m[i] < middle_m)) {
-        if (before > 0 && most_m > 0.0) {
-          between_s.push_back(time_s[i] - time_s[before]);
-          fullness.push_back(sum_m / (static_cast<double>(i - before) * most_m));
-        }
-        before = i;
-        most_m = sum_m = 0.0;
-      }
-      const double deviation_m = std::abs(value_m[i] - middle_m);
-      sum_m += deviation_m;
-      most_m = std::max(most_m, deviation_m);
-      farthest_m = std::max(farthest_m, deviation_m);
+    found.middle_m[axis] = upper_median(value_m);
+    double farthest_m = 0.0;
+    for (double& value : value_m) {
+      value -= found.middle_m[axis];
+      farthest_m = std::max(farthest_m, std::abs(value));
     }
-    const bool is_harmonic =
-        between_s.size() >= fewest_half_periods && upper_median(fullness) > least_fullness;
-    if (!is_harmonic || !(farthest_m > found.most_m)) continue;
-    // The mean without noise near the middle or left-out rows: readings are too coarse for a
-    // median.
+    const std::vector<Passage> passed = passages(time_s, value_m, noise_levels * noise_m[axis]);
+    if (passed.size() <= fewest_half_periods) continue;
+    std::vector<double> between_s, readings;
+    double sum_m = 0.0, full_m = 0.0;
+    for (size_t i = 1; i < passed.size(); ++i) {
+      std::vector<double> sizes_m;
+      for (size_t k = passed[i - 1].before; k < passed[i].before; ++k) {
+        sizes_m.push_back(std::abs(value_m[k + 1]));
+        sum_m += sizes_m.back();
+      }
+      // Without the upper tenth, which outliers may be in.
+      std::ranges::sort(sizes_m);
+      readings.push_back(static_cast<double>(sizes_m.size()));
+      full_m += readings.back() * sizes_m[sizes_m.size() * 9 / 10];
+      between_s.push_back(passed[i].time_s - passed[i - 1].time_s);
+    }
+    // The mean without left-out rows: readings are too coarse for a median.
     const double usual_s = upper_median(between_s);
     std::erase_if(between_s, [&](double s) { return std::abs(s - usual_s) > 0.3 * usual_s; });
-    found.period_s = 2.0 * std::accumulate(between_s.begin(), between_s.end(), 0.0) /
-                     static_cast<double>(between_s.size());
+    const auto count = static_cast<double>(between_s.size());
+    const bool is_harmonic = count >= regular * static_cast<double>(readings.size()) &&
+                             upper_median(readings) >= fewest_readings &&
+                             sum_m > least_fullness * full_m;
+    if (!is_harmonic || !(farthest_m > found.most_m)) continue;
+    found.period_s = 2.0 * std::accumulate(between_s.begin(), between_s.end(), 0.0) / count;
     found.most_m = farthest_m;
   }
   return found.period_s > 0.0 ? std::optional(found) : std::nullopt;

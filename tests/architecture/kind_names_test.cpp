@@ -23,7 +23,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"diagnosis/json.cpp", {"empirical_torque"}},
     // Written into improved.toml and into a first experiment.
     {"diagnosis/improved.cpp", {"empirical_torque"}},
-    {"diagnosis/guess/motion.cpp", {"bearing_drag", "sliding_spring"}},
+    {"diagnosis/guess/motion.cpp", {"sliding_spring"}},
     // Motion and light share this kind.
     {"diagnosis/light/together.cpp", {"gravity_tilt"}},
     // Kinds of the same form, named by one of the two.

@@ -87,6 +87,10 @@ TEST_F(Headers, OfAnglesAndRates) {
       {"Amplitude (rad)", "angle", 1.0},
       {"position (rad)", "angle", 1.0},
       {"Ausschlag [°]", "angle", degree},
+      {"angle (rev)", "angle", turn},
+      {"encoder [turns]", "angle", turn},
+      {"Drehwinkel in Umdrehungen", "angle", turn},
+      {"speed (rev/s)", "rate", turn},
       {"α [°]", "angle", degree},
       {"wheel_rpm", "rate", turn / 60.0},
       {"drum_rpm", "rate", turn / 60.0},
@@ -167,8 +171,7 @@ TEST_F(Headers, OfOtherQuantitiesAreNoMotion) {
 }
 
 TEST_F(Headers, OfUnknownUnitsAreRefused) {
-  for (const char* header :
-       {"angle (gon)", "Encoder (counts)", "Winkel / Skt", "Winkel (rad/s)", "angle (rev)"}) {
+  for (const char* header : {"angle (gon)", "Encoder (counts)", "Winkel / Skt", "Winkel (rad/s)"}) {
     EXPECT_THAT(refusal_of([&] { channels(std::string("t_s;") + header); }),
                 AllOf(HasSubstr("the unit"), HasSubstr("rad, mrad, deg (°)")))
         << header;
@@ -271,6 +274,35 @@ TEST_F(Headers, AreAskedForWithACommandForAShell) {
               AllOf(HasSubstr("prose.txt:3"), HasSubstr("--columns t_s,x_m,y_m")));
   EXPECT_THAT(refusal_of([&] { guess_columns(test_file("two.txt", "a b\n0 1 2\n1 2 3\n")); }),
               AllOf(HasSubstr("2 cells above rows of 3"), HasSubstr("--columns t_s,x_m,y_m")));
+}
+
+// As Tracker and LabVIEW write them. The rows are read without the line of units.
+TEST_F(Headers, UnitsInALineBelowAreRead) {
+  std::string text = "made by a camera\nt,angle\n\"ms\",(deg)\n";
+  for (int i = 0; i < 40; ++i) text += printed("%d,%.3f\n", 40 * i, 0.1 * i);
+  const fs::path file = test_file("below.csv", text);
+  const std::string toml = guess_experiment({file}, ".");
+  EXPECT_THAT(toml, AllOf(HasSubstr("t_ms = \"t\""), HasSubstr("angle_deg = \"angle\"")));
+  RecordingOptions options;
+  options.columns = {{"t_ms", "t"}, {"angle_deg", "angle"}};
+  const Recording read = read_recording(file, options);
+  ASSERT_EQ(read.rows(), 40U);
+  EXPECT_NEAR(read.time_s[10], 0.4, 1e-12);
+  EXPECT_NEAR(read.find("angle_rad")->values[10], 1.0 * degree, 1e-12);
+}
+
+TEST_F(Headers, OfTwoBodiesAreRefusedWithACommandForOne) {
+  std::string text = "t (s),x1 (m),x2 (m)\n";
+  for (int i = 0; i < 40; ++i)
+    text += printed("%.2f,%.3f,%.3f\n", 0.04 * i, 0.1 * i, 1.0 - 0.1 * i);
+  const fs::path file = test_file("gliders.csv", text);
+  EXPECT_THAT(refusal_of([&] { guess_experiment({file}, "."); }),
+              AllOf(HasSubstr("several columns that may be x_m"), HasSubstr("\"x2 (m)\""),
+                    HasSubstr("gliders.csv --columns t_s,x_m,column_3 ")));
+  EXPECT_THAT(refusal_of([&] {
+                guess_columns(test_file("counts.csv", "t (s),encoder (counts)\n0,1\n1,2\n"));
+              }),
+              AllOf(HasSubstr("the unit \"counts\""), HasSubstr("rev (the counts of an encoder")));
 }
 
 TEST_F(Headers, OfFewRowsAreNamedInTheRefusal) {

@@ -295,7 +295,7 @@ TEST(Guess, AWheelIsDiagnosedByItsGuess) {
   const std::string toml = guess_experiment({file}, file.parent_path());
   EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"one_axis\""),
                           HasSubstr("rate_deg_s = \"Angular speed (deg/s)\""),
-                          HasSubstr("Unused columns: Battery")));
+                          HasSubstr("Unused columns: Battery"), Not(HasSubstr("[[disturbance]]"))));
   const Settings root = settings_in(toml);
   const Recording recording = read_recording(file, read_recording_options(root.table("recording")));
   const Diagnosis d = diagnose(read_attitude_model(root), {{"wheel.csv", recording}}, {});
@@ -362,6 +362,28 @@ TEST(Guess, AVideoOfAPendulumShowsItsPivot) {
   }
 }
 
+// A short arc in noise, with one wrong place.
+TEST(Guess, AShortArcHasItsRadius) {
+  constexpr double radius_m = 1.2, interval_s = 1.0 / 30.0;
+  Noise noise(14, 0.002 * radius_m);
+  double mean_y_m = 0.0;
+  constexpr int draws = 20;
+  for (int draw = 0; draw < draws; ++draw) {
+    std::string text = "t_s,x_m,y_m\n";
+    for (int i = 0; i < 400; ++i) {
+      const double t = interval_s * i, angle_rad = 0.25 * std::exp(-0.02 * t) * std::cos(2.8 * t);
+      text += printed("%.5f,%.5f,%.5f\n", t, radius_m * std::sin(angle_rad) + noise(),
+                      -radius_m * std::cos(angle_rad) + noise() + (i == 7 ? 0.03 : 0.0));
+    }
+    const std::string toml = guess_experiment({test_file("arc.csv", text)}, ".");
+    const auto pivot_m = read_recording_options(settings_in(toml).table("recording")).pivot_m;
+    ASSERT_TRUE(pivot_m);
+    mean_y_m += (*pivot_m)[1] / draws;
+  }
+  // The radius of one draw scatters by 1.2 % (from random draws).
+  EXPECT_NEAR(mean_y_m, 0.0, 0.01 * radius_m);
+}
+
 // A straight track is part of any large circle.
 TEST(Guess, ATrackIsNoCircle) {
   Noise noise(10, 1e-3);
@@ -415,6 +437,41 @@ TEST(Guess, AWeightThatOscillatesHangsOnASpring) {
               Not(HasSubstr("sliding_spring")));
 }
 
+// White noise of 2 mm, and a strongly damped oscillation after which the readings rest in noise.
+TEST(Guess, NoiseIsNoSpring) {
+  constexpr double omega_rad_s = 0.7, damping_1_s = 0.09;
+  Noise noise(13, 2e-3);
+  std::string white = "t,x\n", seismometer = white;
+  for (int i = 0; i < 900; ++i) {
+    const double t = 0.1 * i;
+    white += printed("%.1f,%.5f\n", t, noise());
+    seismometer += printed("%.1f,%.5f\n", t,
+                           0.25 * std::exp(-damping_1_s * t) * std::cos(omega_rad_s * t) + noise());
+  }
+  EXPECT_THAT(guess_experiment({test_file("white.csv", white)}, "."),
+              Not(HasSubstr("sliding_spring")));
+  const Settings guessed =
+      settings_in(guess_experiment({test_file("rests.csv", seismometer)}, "."));
+  const std::vector<Settings> effects = guessed.tables("disturbance");
+  ASSERT_EQ(effects.size(), 1U);
+  const double stiffness = omega_rad_s * omega_rad_s + damping_1_s * damping_1_s;
+  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, 0.1 * stiffness);
+}
+
+// Counts of an encoder. At 14.5 counts per reading, the rounding errors alternate.
+TEST(Guess, AnEncoderHasTheNoiseOfItsStep) {
+  constexpr double step_rev = 1e-3;
+  std::string text = "time (s),angle (revolutions)\n";
+  for (int i = 0; i < 150; ++i) {
+    const double counts = 14.49 * (i - 12.0 * (1.0 - std::exp(-i / 12.0)));
+    text += printed("%.4f,%.3f\n", 0.01 * i, step_rev * std::round(counts));
+  }
+  const Settings guessed = settings_in(guess_experiment({test_file("encoder.csv", text)}, "."));
+  constexpr double step_rad = step_rev * 2.0 * pi;
+  EXPECT_NEAR(guessed.table("sensors").table("angle").number("noise_arcsec"),
+              step_rad / std::sqrt(12.0), 0.003 * step_rad);
+}
+
 // The turning points of a swing alternate in sign: their differences contain no noise.
 TEST(Guess, TurningPointsDetermineNoNoise) {
   std::string text = "t_s,angle_rad\n";
@@ -443,6 +500,22 @@ TEST(Guess, ATorsionPendulumTurnsAboutAnUprightAxis) {
                 AllOf(HasSubstr("axis = \"z\""), HasSubstr("in proportion to the angle")))
         << "every " << interval_s << " s";
   }
+}
+
+// A spring beyond half a turn, and a spring and a pendulum of which three periods were recorded.
+TEST(Guess, LargeAndShortSwingsShowTheirLaw) {
+  const auto guess = [](const std::vector<double>& angle_rad) {
+    return guess_experiment({test_file("swing.csv", angles_text(angle_rad, 0.05))}, ".");
+  };
+  for (const double most_rad : {4.2, 2.6}) {
+    std::vector<double> angle_rad;
+    for (int i = 0; i < 90; ++i) {
+      const double t = 0.05 * i;
+      angle_rad.push_back(0.1 + most_rad * std::exp(-0.1 * t) * std::cos(4.5 * t));
+    }
+    EXPECT_THAT(guess(angle_rad), HasSubstr("axis = \"z\"")) << most_rad;
+  }
+  EXPECT_THAT(guess(Swing{25.0, 0.0, 0.2, 0.0}.from(2.6, 0.05, 90)), HasSubstr("axis = \"x\""));
 }
 
 // Three rates of a telephone on a pendulum: those across the axis are small, and none has a mean.
