@@ -110,15 +110,21 @@ ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<
                                  {"temperature", "", 0.0, 0.0, 1.0, -20.0, 20.0}});
   }
   // Near the condition of the reference, translation is not identifiable.
-  constexpr double no_distance = 0.02;
-  const bool translates = std::ranges::any_of(
-      runs, [&](const ModuleRun& run) { return distance_of(nominal_, run.sweep) > no_distance; });
+  const auto is_far = [&](const ModuleSweep& sweep, double temperature_K) {
+    constexpr double no_distance = 0.02;
+    return distance_of(nominal_, sweep.light, temperature_K) > no_distance;
+  };
+  const bool any_is_far = std::ranges::any_of(
+      runs, [&](const ModuleRun& run) { return is_far(run.sweep, run.sweep.temperature_K); });
   const inference::ResidualModel model(parameters, [&](const VectorXd& x, Index run, VectorXd& r,
                                                        MatrixXd* slopes) {
     const ModuleRun& of = runs[static_cast<size_t>(run)];
     r = residuals(h, x, of);
     if (slopes == nullptr) return;
     slopes->resize(r.size(), x.size());
+    const bool translates =
+        any_is_far ||
+        is_far(of.sweep, acting(design_, nominal_, h, of.sweep, x).state.temperature_K);
     for (Index k = 0; k < x.size(); ++k) {
       const Index shared = k - of_curve;
       if (!translates && shared >= of_cell && shared < of_module) {
