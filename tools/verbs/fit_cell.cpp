@@ -502,6 +502,7 @@ Product list_module(const ListedModule& module, const Console& console) {
   rows.push_back({"gap_eV", {module.cell.gap_eV}});
   rows.push_back({"gap_slope_per_K", {module.cell.gap_slope_1_K}});
   rows.push_back({"photocurrent_slope_per_K", {module.cell.photocurrent_slope_1_K}});
+  if (!module.note.empty()) console.line("  note: " + module.note);
   rows.push_back({"reference_temperature_K", {p.temperature_K}});
   if (has_area) rows.push_back({"reference_area_m2", {module.cell.reference_area_m2}});
   console.heading("One cell, for [array.cell_parameters]");
