@@ -163,23 +163,6 @@ void find_rates(IvSweep& sweep, std::vector<double> time_s) {
   }
 }
 
-// Reverses the currents of a curve whose current is counted into the device.
-bool reverse_negative(IvSweep& sweep) {
-  const std::vector<double>& voltage_V = sweep.voltage_V;
-  if (voltage_V.empty()) return false;
-  const auto current_at = [&](auto reading) {
-    return sweep.current_A[static_cast<size_t>(reading - voltage_V.begin())];
-  };
-  const auto highest = std::ranges::max_element(voltage_V);
-  const double short_circuit_A =
-      current_at(std::ranges::min_element(voltage_V, {}, [](double v) { return std::abs(v); }));
-  if (!(short_circuit_A < 0.0 && *highest > 0.0 && current_at(highest) > 0.5 * short_circuit_A)) {
-    return false;
-  }
-  for (double& current : sweep.current_A) current = -current;
-  return true;
-}
-
 class Reader {
  public:
   Reader(std::string_view text, const std::string& file, const CurveColumns& columns_named)

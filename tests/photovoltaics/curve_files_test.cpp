@@ -53,6 +53,22 @@ TEST(PhotovoltaicFit, ATailThatTheMeterMadeIsLeftOut) {
   }
 }
 
+TEST(PhotovoltaicFit, DeadReadingsBelowAFlowingCurrentAreLeftOut) {
+  IvSweep sweep = clipped_curve(0.0, 3);
+  for (const size_t i : {0u, 1u, 2u, 30u, 31u}) sweep.current_A[i] = 0.0;
+  const CurveCleaning cleaning = clean_curve(sweep);
+  EXPECT_EQ(cleaning.dead, 5u);
+  EXPECT_EQ(cleaning.spikes, 0u);
+  EXPECT_EQ(cleaning.kept.size(), sweep.voltage_V.size());
+  EXPECT_EQ(cleaning.kept.front(), 3u);
+  EXPECT_NEAR(fit_sweeps(std::array{sweep}, {}).diode.photocurrent_A.value, 8.0, 0.01);
+  // A curve that is not cleaned: the refusal names the reading.
+  IvSweep dead = clipped_curve(0.0, 3);
+  dead.current_A[0] = 0.0;
+  EXPECT_THAT(refusal_of([&] { fit_sweeps(std::array{dead}, {}); }),
+              testing::HasSubstr("0 A at 0 V"));
+}
+
 TEST(PhotovoltaicFit, CurvesThatGoOnBeyondTheirEndsStayWhole) {
   ivcurves::Truth truth{8.0, 1e-9, 5e-3, 50.0, 1.1, 1};
   const CellCurve cell(truth.parameters());

@@ -45,8 +45,9 @@ void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
       task.notes.push_back(name + ": current densities; the parameters are those of 1 cm²");
     }
     if (!curve.stated.empty()) task.notes.push_back(name + ": " + curve.stated + " by its header");
-    const CurveCleaning cleaning = clean_curve(curve.sweep);
+    const CurveCleaning cleaning = clean_curve(curve.sweep, task.substrings > 0);
     note(cleaning.spikes, "readings far from both neighbours");
+    note(cleaning.dead, "readings of 0 A below voltages at which a current flows");
     note(cleaning.clipped, "points from " + show(cleaning.clipped_from_V) +
                                " V on, beyond open circuit, where the meter stays at " +
                                show(cleaning.clipped_A) + " A");
