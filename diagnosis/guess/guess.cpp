@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "diagnosis/light/model/recording.h"
+#include "diagnosis/light/module/nominal.h"
 #include "photovoltaics/fit/fit.h"
 
 namespace photorque {
@@ -16,8 +18,8 @@ namespace fs = std::filesystem;
 // A curve and the misfit of one diode to it.
 struct MeasuredCurve {
   fs::path file;
-  double short_A = 0.0, open_V = 0.0;
-  double misfit = INFINITY;  // rms relative to the short-circuit current
+  double open_V = 0.0;
+  double misfit = 0.0;  // rms relative to the short-circuit current
 };
 
 MeasuredCurve measured_curve(const fs::path& file, const RecordingOptions& reading) {
@@ -26,24 +28,24 @@ MeasuredCurve measured_curve(const fs::path& file, const RecordingOptions& readi
     throw InputError({file.string()}, "header", "another kind of recording than the first",
                      "curves of current over voltage alone");
   }
-  MeasuredCurve curve{file};
-  for (size_t i = 0; i < recording.rows(); ++i) {
-    curve.short_A = std::max(curve.short_A, recording.current_A[i]);
-    if (recording.current_A[i] >= 0.0)
-      curve.open_V = std::max(curve.open_V, recording.voltage_V[i]);
+  MeasuredCurve measured{file};
+  constexpr size_t most_points = 200;
+  for (const LightRecording& curve : sweeps_of(recording)) {
+    const ModuleSweep sweep = module_sweep(curve, {}, most_points, nullptr);
+    const double short_A = std::ranges::max(sweep.current_A);
+    for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+      if (sweep.current_A[i] >= 0.0) {
+        measured.open_V = std::max(measured.open_V, sweep.voltage_V[i]);
+      }
+    }
+    try {
+      const SweepFit fit = fit_sweeps(std::vector<IvSweep>{{sweep.voltage_V, sweep.current_A}}, {});
+      measured.misfit = std::max(measured.misfit, fit.rms_A / short_A);
+    } catch (const std::runtime_error&) {
+      measured.misfit = INFINITY;  // no diode fits the curve
+    }
   }
-  if (!(curve.short_A > 0.0) || !(curve.open_V > 0.0)) {
-    throw InputError({file.string()}, "rows", "no positive current at a positive voltage",
-                     "a curve of a lit module");
-  }
-  try {
-    const IvSweep sweep{recording.voltage_V, recording.current_A};
-    curve.misfit = fit_sweeps(std::vector<IvSweep>{sweep}, {}).rms_A / curve.short_A;
-  } catch (const InputError&) {
-    // No diode fits the curve, so its misfit remains infinite.
-  } catch (const NumericalError&) {
-  }
-  return curve;
+  return measured;
 }
 
 // Number of crystalline silicon cells in series. They have open-circuit voltages of 0.55 to 0.74 V
@@ -84,6 +86,10 @@ void guess_module(TomlDocument& document, const std::vector<fs::path>& recording
   const MeasuredCurve& clearest = *std::min_element(
       curves.begin(), curves.end(),
       [](const MeasuredCurve& a, const MeasuredCurve& b) { return a.misfit < b.misfit; });
+  if (!std::isfinite(clearest.misfit)) {
+    throw InputError({clearest.file.string()}, "rows", "a curve that no diode fits",
+                     "a current-voltage curve of a lit module");
+  }
   const int cells = cells_in_series(clearest.open_V);
   const fs::path reference = fs::absolute(clearest.file).lexically_proximate(fs::absolute(folder));
   SettingsNode::Table& module = document.table("module");

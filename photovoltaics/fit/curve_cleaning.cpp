@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "core/numerics/median.h"
 #include "core/numerics/order.h"
@@ -19,9 +21,16 @@ std::vector<size_t> order_of(const IvSweep& sweep) {
   });
 }
 
+// Removes the marked readings from the sweep and from the indices of those kept.
+void take(const std::vector<char>& out, IvSweep& sweep, CurveCleaning& cleaning) {
+  sweep = sweep.without(out);
+  size_t i = 0;
+  std::erase_if(cleaning.kept, [&](size_t) { return out[i++] != 0; });
+}
+
 // Removes single readings that differ from both neighbours, which agree with each other and with
-// the readings beyond them. Returns their number.
-size_t take_spikes(IvSweep& sweep) {
+// the readings beyond them.
+void take_spikes(IvSweep& sweep, CurveCleaning& cleaning) {
   const std::vector<size_t> order = order_of(sweep);
   const double scale_A = std::ranges::max(sweep.current_A);
   constexpr double far = 0.1, alike = 0.25;
@@ -40,13 +49,47 @@ size_t take_spikes(IvSweep& sweep) {
     }
   }
   // If there are many, they are not outliers.
-  if (count * 20 > order.size()) return 0;
-  if (count > 0) sweep = sweep.without(out);
-  return count;
+  if (count == 0 || count * 20 > order.size()) return;
+  cleaning.spikes = count;
+  take(out, sweep, cleaning);
+}
+
+// Removes readings without current at voltages below those of the highest voltages with a current.
+void take_dead(IvSweep& sweep, CurveCleaning& cleaning) {
+  const double flows_A = 0.1 * std::ranges::max(sweep.current_A);
+  std::vector<double> flowing_V;
+  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+    if (sweep.current_A[i] > flows_A) flowing_V.push_back(sweep.voltage_V[i]);
+  }
+  constexpr size_t fewest = 3;
+  if (flowing_V.size() < fewest) return;
+  std::ranges::nth_element(flowing_V, flowing_V.begin() + (fewest - 1), std::greater());
+  std::vector<char> out(sweep.voltage_V.size(), 0);
+  for (size_t i = 0; i < out.size(); ++i) {
+    out[i] = sweep.current_A[i] == 0.0 && sweep.voltage_V[i] < flowing_V[fewest - 1];
+    cleaning.dead += static_cast<size_t>(out[i]);
+  }
+  if (cleaning.dead > 0) take(out, sweep, cleaning);
 }
 
 }  // namespace
 }  // namespace curve_cleaning
+
+bool reverse_negative(IvSweep& sweep) {
+  const std::vector<double>& voltage_V = sweep.voltage_V;
+  if (voltage_V.empty()) return false;
+  const auto current_at = [&](auto reading) {
+    return sweep.current_A[static_cast<size_t>(reading - voltage_V.begin())];
+  };
+  const auto highest = std::ranges::max_element(voltage_V);
+  const double short_circuit_A =
+      current_at(std::ranges::min_element(voltage_V, {}, [](double v) { return std::abs(v); }));
+  if (!(short_circuit_A < 0.0 && *highest > 0.0 && current_at(highest) > 0.5 * short_circuit_A)) {
+    return false;
+  }
+  for (double& current : sweep.current_A) current = -current;
+  return true;
+}
 
 IvSweep IvSweep::without(const std::vector<char>& out) const {
   IvSweep kept;
@@ -130,13 +173,18 @@ UnsteadyLight take_unsteady_light(IvSweep& sweep, double noise) {
   return found;
 }
 
-CurveCleaning clean_curve(IvSweep& sweep) {
+CurveCleaning clean_curve(IvSweep& sweep, bool dark_parts) {
   using namespace curve_cleaning;
   CurveCleaning cleaning;
-  if (sweep.voltage_V.size() < 8 || sweep.current_A.size() != sweep.voltage_V.size()) return {};
+  cleaning.kept.resize(sweep.voltage_V.size());
+  std::iota(cleaning.kept.begin(), cleaning.kept.end(), size_t{0});
+  if (sweep.voltage_V.size() < 8 || sweep.current_A.size() != sweep.voltage_V.size()) {
+    return cleaning;
+  }
   const double scale_A = std::ranges::max(sweep.current_A);
-  if (!(scale_A > 0.0)) return {};
-  cleaning.spikes = take_spikes(sweep);
+  if (!(scale_A > 0.0)) return cleaning;
+  take_spikes(sweep, cleaning);
+  take_dead(sweep, cleaning);
   const std::vector<size_t> order = order_of(sweep);
   const auto volts = [&](size_t k) { return sweep.voltage_V[order[k]]; };
   const auto amperes = [&](size_t k) { return sweep.current_A[order[k]]; };
@@ -166,6 +214,8 @@ CurveCleaning clean_curve(IvSweep& sweep) {
     std::vector<double> tail;
     for (size_t k = first; k < order.size(); ++k) tail.push_back(amperes(k));
     const double usual_A = upper_median(tail);
+    constexpr double end = 0.85;
+    if (dark_parts && usual_A >= 0.0 && volts(first) < end * volts(order.size() - 1)) break;
     for (double& one : tail) one = std::abs(one - usual_A);
     const double around_A = std::max(5.0 * upper_median(tail), 2e-3 * scale_A);
     std::vector<char> out(order.size(), 0);
@@ -176,7 +226,7 @@ CurveCleaning clean_curve(IvSweep& sweep) {
       ++cleaning.clipped;
     }
     cleaning.clipped_A = usual_A;
-    sweep = sweep.without(out);
+    take(out, sweep, cleaning);
     break;
   }
   return cleaning;

@@ -57,12 +57,20 @@ bool is_missing(std::string_view cell) {
   return value && std::abs(*value) > 1e30;
 }
 
+// A further column of a quantity.
+struct Further {
+  size_t place;
+  Unit unit;
+};
+
 struct Header {
   char separator = ',';
   std::array<std::optional<size_t>, columns> place;
   std::array<Unit, columns> unit;
   std::array<bool, columns> has_unit{};
   std::array<std::string, columns> title;  // title as written
+  // Columns beside the first one that only their units name.
+  std::array<std::vector<Further>, columns> further;
   size_t cells = 0;
   std::optional<size_t> reading, source;  // indices found by instrument_header()
 };
@@ -94,33 +102,41 @@ std::optional<Header> instrument_header(Header header, const std::vector<std::st
   return header;
 }
 
+// The columns of a header line; `by_unit`: also of unknown names with a known unit.
 std::optional<Header> header_of(std::string_view line, const InputLocation& where,
-                                const CurveColumns& columns_named) {
+                                const CurveColumns& columns_named, bool by_unit) {
   Header header;
   header.separator = separator_of(line);
   header.unit.fill({"", 1.0, 0.0});
   const std::vector<std::string_view> cells = split_header(line, header.separator);
   header.cells = cells.size();
-  std::array<bool, columns> is_qualified{};
+  std::array<Named::Match, columns> match{};
   for (size_t i = 0; i < cells.size(); ++i) {
-    const Named name = named(known_as(unquoted(cells[i]), columns_named));
+    const std::string_view known = known_as(unquoted(cells[i]), columns_named);
+    Named name = named(known);
+    if (name.column == columns && by_unit) name = named_by_unit(known);
     if (name.column == columns) continue;
     const bool needed = name.column == voltage || name.column == current;
     if (!name.unknown_unit.empty()) {
-      if (!needed || name.is_qualified) continue;
+      if (!needed || name.match != Named::plain) continue;
       throw InputError(where, std::string(unquoted(cells[i])), "the unit " + name.unknown_unit,
                        name.column == voltage ? "V or mV" : "A, mA, µA or mA/cm²");
     }
+    std::vector<Further>& further = header.further[name.column];
     if (header.place[name.column]) {
       // A plain name has priority over a qualified one, and the first of two qualified ones over
       // the second.
-      if (!needed || name.is_qualified) continue;
-      if (!is_qualified[name.column]) {
+      if (!needed || name.match > match[name.column]) continue;
+      const bool is_same = name.match == match[name.column];
+      if (is_same && name.match == Named::by_unit) further.push_back({i, *name.unit});
+      if (is_same && name.match != Named::plain) continue;
+      if (is_same) {
         throw InputError(where, std::string(unquoted(cells[i])), "a second column of this quantity",
                          "one voltage and one current; one curve a file, or a column \"curve\"");
       }
     }
-    is_qualified[name.column] = name.is_qualified;
+    further.clear();
+    match[name.column] = name.match;
     header.place[name.column] = i;
     header.has_unit[name.column] = name.unit.has_value();
     header.title[name.column] = unquoted(cells[i]);
@@ -132,13 +148,14 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
 
 // Whether all columns of a header belong to a curve. A log of a motor, for example, has further
 // columns.
-bool is_of_curve(std::string_view line, const Header& header) {
+bool is_of_curve(std::string_view line, const Header& header, bool by_unit) {
   constexpr std::string_view beside =
       "power,p,leistung,puissance,potencia,potenza,time,zeit,temps,tiempo,tempo,date,index,point,"
       "no,nr,number,id,rep,/,in,watts,watt,run,direction,status,stat,res";
   for (const std::string_view cell : split_header(line, header.separator)) {
     std::string text = lower_case(unquoted(cell));
     if (text.empty() || named(text).column != columns) continue;
+    if (by_unit && named_by_unit(text).column != columns) continue;
     std::ranges::replace(text, '_', ' ');
     text = text.substr(0, text.find_first_of(" ([/.", 1));
     if (text.starts_with('[') || text.starts_with('(')) continue;
@@ -163,23 +180,6 @@ void find_rates(IvSweep& sweep, std::vector<double> time_s) {
   }
 }
 
-// Reverses the currents of a curve whose current is counted into the device.
-bool reverse_negative(IvSweep& sweep) {
-  const std::vector<double>& voltage_V = sweep.voltage_V;
-  if (voltage_V.empty()) return false;
-  const auto current_at = [&](auto reading) {
-    return sweep.current_A[static_cast<size_t>(reading - voltage_V.begin())];
-  };
-  const auto highest = std::ranges::max_element(voltage_V);
-  const double short_circuit_A =
-      current_at(std::ranges::min_element(voltage_V, {}, [](double v) { return std::abs(v); }));
-  if (!(short_circuit_A < 0.0 && *highest > 0.0 && current_at(highest) > 0.5 * short_circuit_A)) {
-    return false;
-  }
-  for (double& current : sweep.current_A) current = -current;
-  return true;
-}
-
 class Reader {
  public:
   Reader(std::string_view text, const std::string& file, const CurveColumns& columns_named)
@@ -192,7 +192,14 @@ class Reader {
       const std::vector<std::string_view> cells = split(line, header_.separator);
       if (is_first && states_units(cells)) continue;
       if (is_first && header_.reading) assign_instrument(cells);
-      read_row(cells);
+      read_row(cells, 0.0);
+      const Header first = header_;
+      for (size_t k = 0; k < first.further[current].size(); ++k) {
+        header_.place[current] = first.further[current][k].place;
+        header_.unit[current] = first.further[current][k].unit;
+        read_row(cells, static_cast<double>(k + 1));
+      }
+      header_ = first;
     }
     for (const Column column : {irradiance, temperature}) {
       if (column != temperature || !header_.place[column] || header_.has_unit[column]) continue;
@@ -217,17 +224,39 @@ class Reader {
   void find_header() {
     std::string_view line;
     std::string first;
-    while (lines_.next(line)) {
-      if (const auto header = header_of(line, lines_.where(), columns_named_)) {
-        header_ = *header;
-        read_conditions(line);
-        return;
+    for (const bool by_unit : {false, true}) {
+      lines_ = DataLines(text_, file_);
+      while (lines_.next(line)) {
+        if (const auto header = header_of(line, lines_.where(), columns_named_, by_unit)) {
+          header_ = *header;
+          refuse_ambiguous(line);
+          read_conditions(line);
+          return;
+        }
+        if (first.empty()) first = std::string(line.substr(0, 60));
       }
-      if (first.empty()) first = std::string(line.substr(0, 60));
     }
     throw InputError({file_, 1}, "", first.empty() ? "nothing" : in_quotes(first),
                      "a header that names a voltage and a current: add the line "
                      "voltage_V,current_A above the numbers");
+  }
+
+  // Throws InputError for several columns that could be the voltage, or several currents beside a
+  // column of curve numbers.
+  void refuse_ambiguous(std::string_view line) const {
+    for (const Column column : {voltage, current}) {
+      const std::vector<Further>& further = header_.further[column];
+      if (further.empty() || (column == current && !header_.place[curve_number])) continue;
+      std::string names = in_quotes(header_.title[column]);
+      for (const Further& one : further) {
+        names += ", " + in_quotes(unquoted(split_header(line, header_.separator)[one.place]));
+      }
+      const bool is_voltage = column == voltage;
+      throw InputError(lines_.where(), is_voltage ? "voltage" : "current", names,
+                       std::string("one ") + (is_voltage ? "voltage" : "current") +
+                           ": rename that column to " + (is_voltage ? "voltage_V" : "current_A") +
+                           " (or with its unit, _m" + (is_voltage ? "V)" : "A)"));
+    }
   }
 
   // Irradiance and temperature of the cells in the lines above `header`: "Irradiance: 1000 W/m2",
@@ -331,7 +360,8 @@ class Reader {
     return false;
   }
 
-  void read_row(const std::vector<std::string_view>& cells) {
+  // Reads a row of the curve `further`, or of the one whose number it states.
+  void read_row(const std::vector<std::string_view>& cells, double further) {
     // For example decimal commas, which would shift the columns after them.
     if (header_.separator == ',' && header_.cells == 2 && cells.size() == 4) {
       throw InputError(lines_.where(), "", "a row of 4 cells",
@@ -339,7 +369,7 @@ class Reader {
     }
     if (is_after_readings(cells)) return;
     const double number =
-        header_.place[curve_number] ? value(curve_number, cells).value_or(0.0) : 0.0;
+        header_.place[curve_number] ? value(curve_number, cells).value_or(0.0) : further;
     const auto [found, is_new] = curves_.try_emplace(number);
     if (is_new) order_.push_back(number);
     Rows& rows = found->second;
@@ -416,8 +446,12 @@ std::vector<MeasuredCurve> curves_in(std::string_view text, const std::string& f
 
 bool is_curve_header(std::string_view line, const CurveColumns& columns) {
   try {
-    const auto header = curve_text::header_of(line, {}, columns);
-    return header && (!columns.empty() || curve_text::is_of_curve(line, *header));
+    if (const auto header = curve_text::header_of(line, {}, columns, false)) {
+      return !columns.empty() || curve_text::is_of_curve(line, *header, false);
+    }
+    const auto header = curve_text::header_of(line, {}, columns, true);
+    return header && columns.empty() && !header->place[curve_text::time] &&
+           curve_text::is_of_curve(line, *header, true);
   } catch (const InputError&) {
     return true;  // it names curve columns, but in a form that the reader rejects
   }

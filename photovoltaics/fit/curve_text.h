@@ -53,19 +53,28 @@ bool is_curve_header(std::string_view line, const CurveColumns& columns = {});
 // The cells of such a header as written in the file, without quotation marks.
 std::vector<std::string> curve_header_cells(std::string_view line);
 
+// Reverses the currents of a curve whose current is counted into the device. Returns whether it
+// did.
+bool reverse_negative(IvSweep& sweep);
+
 // Points of a curve that are left out because no cell produces them.
 struct CurveCleaning {
   size_t clipped = 0;  // points beyond open circuit where the meter shows no current
   double clipped_from_V = 0.0, clipped_A = 0.0;  // their first voltage and their usual current
   size_t spikes = 0;                             // single readings far from both neighbours
+  size_t dead = 0;           // readings without current below voltages at which a current flows
+  std::vector<size_t> kept;  // indices of the other points
 };
 
-// Removes readings that are due to the meter: single spikes, and the tail beyond open circuit in
+// Removes readings that are due to the meter: single spikes, dead readings (a current of 0 although
+// it falls with the voltage and flows at higher voltages), and the tail beyond open circuit in
 // which the current is constant (a source that blocks reverse current shows 0 or a small offset).
 // Beyond open circuit the current of a cell falls more steeply at higher voltages. A tail consists
 // of points at the highest voltages. Their currents are within 3 % of zero and span less than a
-// quarter of the fall that the steepest slope before them would cause.
-CurveCleaning clean_curve(IvSweep& sweep);
+// quarter of the fall that the steepest slope before them would cause. In the curve of a module
+// with `dark_parts`, a tail with a current of at least 0 over more than 15 % of the voltage is
+// kept: the curve of a module with a dark cell has one.
+CurveCleaning clean_curve(IvSweep& sweep, bool dark_parts = false);
 
 // Readings of the flat part of a curve, below 0.6 of its highest voltage, that were removed because
 // the light was different.

@@ -19,17 +19,17 @@ struct UnitNames {
   double to_SI, offset = 0.0;
 };
 
-// A current density is the current of 1 cm².
+// A current density is the current of 1 cm². Units of an area are compared in the form "macm2".
 constexpr UnitNames units[] = {
     {voltage, "v,volts,volt", 1.0},
     {voltage, "mv", 1e-3},
     {current, "a,amps,amp,a/cm2", 1.0},
-    {current, "ma,ma/cm2,ma/cm^2,ma/cm²", 1e-3},
+    {current, "ma,ma/cm2", 1e-3},
     {current, "ua,µa,μa", 1e-6},
     {current, "a/m2", 1e-4},
-    {irradiance, "w_m2,w/m2,w/m^2,w/m²,wm-2", 1.0},
+    {irradiance, "w/m2", 1.0},
     {irradiance, "kw/m2,suns", 1e3},
-    {irradiance, "mw/cm2,mw/cm²", 10.0},
+    {irradiance, "mw/cm2", 10.0},
     {temperature, "k,kelvin", 1.0},
     {temperature, "c,°c,degc,deg c,celsius", 1.0, zero_celsius_K},
     {time, "s,sec,seconds", 1.0},
@@ -63,7 +63,7 @@ constexpr std::pair<Column, std::string_view> names[] = {
 bool is_qualifier(std::string_view word) {
   constexpr std::string_view known =
       "mod,module,cell,meas,measured,corr,corrected,pv,dut,device,raw,dc,smu,stc,anode,channel,"
-      "panel,terminal,sense,mess,modul,zelle,ch,sample";
+      "panel,terminal,sense,mess,modul,zelle,ch,sample,set,a";
   while (!word.empty() && std::isdigit(static_cast<unsigned char>(word.back()))) {
     word.remove_suffix(1);
   }
@@ -86,7 +86,8 @@ Named qualified(const std::string& cell) {
   std::string text = cell;
   for (char& c : text) c = c == '_' || c == '-' || c == '.' || c == ':' ? ' ' : c;
   Named found;
-  found.is_qualified = true;
+  // A measured value has priority over the one that was set.
+  found.match = text.find("set") == std::string::npos ? Named::qualified : Named::set_value;
   for (const std::string_view word : words_of(text)) {
     if (found.column != columns && !found.unit) found.unit = unit_named(found.column, word);
     if (found.unit) continue;
@@ -100,6 +101,24 @@ Named qualified(const std::string& cell) {
     found.column = of_word;
   }
   return found;
+}
+
+// A unit of an area without its signs: "mA/cm²", "mA cm⁻²" and "mA*cm^-2" are "macm2".
+std::string of_area(std::string_view unit) {
+  std::string text;
+  for (size_t i = 0; i < unit.size(); ++i) {
+    constexpr std::pair<std::string_view, std::string_view> written[] = {
+        {"²", "2"}, {"⁻", ""}, {"·", ""}};
+    const auto sign = std::ranges::find_if(
+        written, [&](const auto& one) { return unit.substr(i).starts_with(one.first); });
+    if (sign != std::end(written)) {
+      text += sign->second;
+      i += sign->first.size() - 1;
+    } else if (std::string_view(" /*^_-").find(unit[i]) == std::string_view::npos) {
+      text += unit[i];
+    }
+  }
+  return text.ends_with('2') ? text : std::string(unit);
 }
 
 Named named_without_brackets(std::string cell) {
@@ -135,10 +154,11 @@ bool is_one_of(std::string_view text, std::string_view list) {
 }
 
 std::optional<Unit> unit_named(Column column, std::string_view name) {
+  const std::string written = of_area(name);
   for (const UnitNames& unit : units) {
     if (unit.column != column) continue;
     const std::vector<std::string_view> known = cells_of(unit.names);
-    const auto found = std::ranges::find(known, name);
+    const auto found = std::ranges::find(known, written, of_area);
     if (found != known.end()) return Unit{*found, unit.to_SI, unit.offset};
   }
   return std::nullopt;
@@ -160,6 +180,35 @@ Named named(std::string_view header_cell) {
   result.unit = unit_named(result.column, unit);
   if (!result.unit && !unit.empty()) result.unknown_unit = unit;
   return result;
+}
+
+Named named_by_unit(std::string_view header_cell) {
+  constexpr std::string_view excluded =
+      "voc,uoc,isc,jsc,vmp,imp,jmp,vmpp,impp,jmpp,vmax,imax,vpm,ipm,pmax,open,short,mpp,max,min,"
+      "maximum,minimum,sd,std,stdev,sigma,err,error,unc,uncertainty,noise,dark,limit,compliance,"
+      "range,start,stop,step,delta";
+  const std::string cell = lower_case(trimmed(header_cell));
+  std::string words = cell;
+  for (char& c : words) {
+    if (std::isalpha(static_cast<unsigned char>(c)) == 0) c = ' ';
+  }
+  for (const std::string_view word : words_of(words)) {
+    if (is_one_of(word, excluded)) return {};
+  }
+  const bool has_bracket = cell.ends_with(')') || cell.ends_with(']');
+  for (size_t i = 1; i < cell.size(); ++i) {
+    if (std::string_view(has_bracket ? "([" : "/_").find(cell[i]) == std::string_view::npos) {
+      continue;
+    }
+    const std::string_view unit =
+        std::string_view(cell).substr(i + 1, cell.size() - i - 1 - has_bracket);
+    for (const Column column : {voltage, current}) {
+      if (const auto found = unit_named(column, trimmed(unit))) {
+        return {column, found, {}, Named::by_unit};
+      }
+    }
+  }
+  return {};
 }
 
 }  // namespace photorque::curve_text

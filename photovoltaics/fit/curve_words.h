@@ -26,9 +26,14 @@ struct Named {
   Column column = columns;
   std::optional<Unit> unit;
   std::string unknown_unit;
-  bool is_qualified = false;
+  enum Match { plain, qualified, set_value, by_unit } match = plain;  // the first has priority
 };
 
 Named named(std::string_view header_cell);
+
+// A voltage or current of an unknown name by its unit in brackets at the end or after / or _:
+// "Ewe/V", "Forward Scan (mA)". Single points ("Voc (V)"), errors, limits and dark currents are
+// excluded.
+Named named_by_unit(std::string_view header_cell);
 
 }  // namespace photorque::curve_text

@@ -1,6 +1,7 @@
 #include "photovoltaics/fit/module_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -186,10 +187,34 @@ double gap_of_technology_eV(const Listing& pan) {
   for (const auto& [word, gap_eV] : {std::pair{"mtCdTe", 1.5}, {"mtCIS", 1.03}}) {
     if (technology == word) return gap_eV;
   }
-  if (technology.starts_with("mtSi")) return 1.12;
+  if (technology.starts_with("mtSi") || technology == "mtHIT" || technology == "mtEFG") return 1.12;
   throw InputError(pan.where(), "Technol", technology.empty() ? "nothing" : technology,
-                   "mtSi… (crystalline silicon), mtCdTe or mtCIS; a datasheet's figures go into "
-                   "[[fit.datasheet]]");
+                   "mtSi…, mtHIT or mtEFG (crystalline silicon), mtCdTe or mtCIS; a datasheet's "
+                   "figures go into [[fit.datasheet]]");
+}
+
+// Sets the cell of a module with a recombination term, for which a cell here has no parameter: the
+// diode of the stated Gamma with the rated figures and slopes. Its leak is proportional to the
+// light as that recombination is.
+void fit_rated(const Listing& pan, ListedModule& m) {
+  constexpr double of_milli = 1e-3;
+  const RatedPoint& rated = m.rated;
+  const TemperatureSlopes slopes{
+      of_milli * pan.number("muISC", -1e5, 1e5) / rated.short_circuit_A,
+      of_milli * pan.number("muVocSpec", -1e6, 0.0) / rated.open_circuit_V};
+  const double one_V = m.cells_in_series * thermal_V(rated.temperature_K);
+  const RatedFit fit = fit_rated_points(
+      std::array{rated}, slopes, one_V * pan.number("Gamma", 0.1, 10.0), {}, ShuntLaw::inverse);
+  const SingleDiode& d = fit.diode;
+  m.cell.gap_eV = fit.model.gap_eV;
+  m.cell.gap_slope_1_K = fit.model.gap_slope_1_K;
+  m.cell.photocurrent_slope_1_K = fit.model.photocurrent_slope_1_K;
+  set_cell({d.photocurrent_A.value, d.saturation_A.value, d.scale_V.value / one_V,
+            d.series_ohm.value, d.shunt_ohm.value},
+           m);
+  m.note = "D2MuTau = " + pan.text("D2MuTau") +
+           ": a cell here has no such recombination; RSerie and RShunt were replaced by a fit to "
+           "Isc, Voc, Imp and Vmp with the stated Gamma, and the leak is proportional to the light";
 }
 
 ListedModule of_pan(const Listing& pan) {
@@ -200,10 +225,7 @@ ListedModule of_pan(const Listing& pan) {
   if (pan.has("Width") && pan.has("Height")) {
     m.area_m2 = pan.number("Width", 0.0, 100.0) * pan.number("Height", 0.0, 100.0);
   }
-  if (pan.has("D2MuTau") && pan.number("D2MuTau", -1.0, 1e6) > 0.0) {
-    throw InputError(pan.where(), "D2MuTau", pan.text("D2MuTau"),
-                     "0: a cell here has no recombination in an intrinsic layer");
-  }
+  const double gap_V = gap_of_technology_eV(pan) * elementary_charge_C / boltzmann_J_K;
   const double T = zero_celsius_K + (pan.has("TRef") ? pan.number("TRef", -100.0, 200.0) : 25.0);
   const double light_W_m2 = pan.has("GRef") ? pan.number("GRef", 0.0, 1e5) : 1000.0;
   m.rated = {light_W_m2,
@@ -212,6 +234,10 @@ ListedModule of_pan(const Listing& pan) {
              pan.number("Voc", 0.0, 1e5),
              pan.number("Imp", 0.0, 1e4),
              pan.number("Vmp", 0.0, 1e5)};
+  if (pan.has("D2MuTau") && pan.number("D2MuTau", -1.0, 1e6) > 0.0) {
+    fit_rated(pan, m);
+    return m;
+  }
   const double n = pan.number("Gamma", 0.1, 10.0), N = m.cells_in_series;
   const double series_ohm = pan.number("RSerie", -1e-12, 1e6);
   const double shunt_ohm = pan.number("RShunt", 0.0, 1e9);
@@ -236,7 +262,6 @@ ListedModule of_pan(const Listing& pan) {
   constexpr double step_K = 10.0;
   const double warm_K = T + step_K;
   const double warm_n = n + (pan.has("muGamma") ? pan.number("muGamma", -1.0, 1.0) : 0.0) * step_K;
-  const double gap_V = gap_of_technology_eV(pan) * elementary_charge_C / boltzmann_J_K;
   CellParameters warm = p;
   warm.temperature_K = warm_K;
   warm.ideality_1 = warm_n;

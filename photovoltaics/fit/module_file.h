@@ -18,6 +18,7 @@ struct ListedModule {
   CellModel cell;        // for the cell's part of that area, or for 1 m² if it is not stated
   double photocurrent_A = 0.0;  // photocurrent of a cell in the light of `rated`
   RatedPoint rated;
+  std::string note;  // on a circuit that is not the stated one
 
   // Values of the circuit of all cells; the photocurrent is proportional to the light.
   RatedPoint predict(double irradiance_W_m2, double temperature_K) const;
@@ -37,8 +38,8 @@ struct ListedModule {
 // open-circuit voltage over 10 K. The gaps of PVsyst: silicon 1.12, CdTe 1.5, CIS 1.03 eV.
 //
 // Throws InputError for other texts, for a name that no row or several rows have, and for values
-// that are missing or that no cell has. PAN files of amorphous silicon with a recombination term
-// (D2MuTau) are rejected.
+// that are missing or that no cell has. PAN files of amorphous silicon are rejected. For those of
+// others with a recombination term (D2MuTau, mostly CdTe) the diode is fitted to the rated figures.
 ListedModule module_in(std::string_view text, const std::string& file, const std::string& name);
 
 }  // namespace photorque

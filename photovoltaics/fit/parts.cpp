@@ -10,6 +10,7 @@
 #include "core/errors.h"
 #include "core/numerics/median.h"
 #include "core/numerics/root.h"
+#include "core/text/format.h"
 
 namespace photorque {
 
@@ -65,19 +66,24 @@ void check_sweep(const IvSweep& sweep) {
 
 SweepEnds sweep_ends(const IvSweep& sweep) {
   SweepEnds ends;
-  double nearest_V = 1e300;
+  double nearest_V = 1e300, at_V = 0.0;
   for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
     if (std::abs(sweep.voltage_V[i]) < nearest_V) {
       nearest_V = std::abs(sweep.voltage_V[i]);
       ends.short_circuit_A = sweep.current_A[i];
+      at_V = sweep.voltage_V[i];
     }
     if (sweep.current_A[i] >= 0.0) {
       ends.open_circuit_V = std::max(ends.open_circuit_V, sweep.voltage_V[i]);
     }
   }
   if (!(ends.short_circuit_A > 0.0) || !(ends.open_circuit_V > 0.0)) {
-    throw InputError({}, "curves", "no point with positive current and voltage",
-                     "a sweep of a lit cell, currents positive");
+    throw InputError(
+        {}, "curves",
+        printed("%.4g A at %.4g V, the reading nearest to 0 V, and %.4g V as the highest "
+                "voltage with a current",
+                ends.short_circuit_A, at_V, ends.open_circuit_V),
+        "a sweep of a lit cell, both positive");
   }
   return ends;
 }

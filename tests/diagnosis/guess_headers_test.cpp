@@ -13,6 +13,8 @@
 #include "core/settings/settings.h"
 #include "core/text/format.h"
 #include "diagnosis/guess/guess.h"
+#include "diagnosis/light/module/diagnose.h"
+#include "scenes/experiment/toml.h"
 #include "tests/files.h"
 #include "tests/refusal.h"
 
@@ -258,6 +260,31 @@ TEST_F(Headers, OfCurvesOfAModule) {
               AllOf(HasSubstr("current_mA = \"J (mA/cm2)\""), HasSubstr("current density")));
   EXPECT_THAT(curve("V;J", 0.02), HasSubstr("in A/cm² by its size"));
   EXPECT_THAT(refusal_of([&] { curve("U;K", 1.0); }), HasSubstr("one voltage and one current"));
+}
+
+// 36 cells of 0.65 V whose meter stays at −0.01 A, or at 0, beyond open circuit, and whose current
+// may be counted into the module: what a guess accepts, a diagnosis reads.
+TEST_F(Headers, OfCurvesThatAMeterMade) {
+  for (const auto& [sign, beyond_A] : {std::pair{1.0, -0.01}, {1.0, 0.0}, {-1.0, 0.0}}) {
+    std::string text = "V,I\n";
+    for (int i = 0; i <= 52; ++i) {
+      const double volt = 0.5 * i, ampere = 5.0 * (1.0 - std::exp((volt - 23.4) / 1.08));
+      text += std::to_string(volt) + "," +
+              std::to_string(volt < 23.4 ? sign * ampere : sign * beyond_A) + "\n";
+    }
+    const fs::path file = test_file("meter.csv", text);
+    const std::string guessed = guess_experiment({file}, testing::TempDir());
+    EXPECT_THAT(guessed, HasSubstr("cells_in_series = 36\n")) << sign << ", " << beyond_A;
+    const Settings root(std::make_shared<const SettingsNode>(parse_toml(guessed, "guess.toml")));
+    const ModuleDesign design = read_module(root, testing::TempDir());
+    EXPECT_EQ(diagnose_module(design, {read_light_recording(file, {})}, {}).verdict,
+              Verdict::consistent)
+        << sign << ", " << beyond_A;
+  }
+  const auto refusal = [](const std::string& text) {
+    return refusal_of([&] { guess_experiment({test_file("few.csv", text)}, testing::TempDir()); });
+  };
+  EXPECT_THAT(refusal("V,I\n0,5\n10,4\n20,0\n"), HasSubstr("at least 12 points"));
 }
 
 TEST_F(Headers, AreAskedForWithACommandForAShell) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "core/errors.h"
@@ -150,6 +151,39 @@ TEST(LightRecordings, SweepsAreReadAsInstrumentsWriteThem) {
   EXPECT_EQ(german.rejected.at("unreadable number"), 1);
   const auto several = read("Curve\tVolts\tAmps\n7\t0\t5\n7\t30\t0\n9\t0\t4\n");
   EXPECT_EQ(several.sweep, (std::vector{0, 0, 1}));
+}
+
+// 36 cells in closed form: V = 36 · 0.0283 V · ln((5.6 A − I)/4e-9 A + 1) − 0.2 Ω · I, which
+// is 21.4 V at no current. `sign`: −1 for a current that is counted into the module.
+std::string curve_of_36_cells(int sign, const std::string& beyond) {
+  std::string rows = "voltage_V,current_A\n";
+  const auto row = [&](double current_A) {
+    const double voltage_V =
+        36.0 * 0.0283 * std::log((5.6 - current_A) / 4e-9 + 1.0) - 0.2 * current_A;
+    rows += std::to_string(voltage_V) + "," + std::to_string(sign * current_A) + "\n";
+  };
+  for (int i = 0; i < 30; ++i) row(5.598 * (1.0 - std::pow(i / 30.0, 3)));
+  return rows + beyond;
+}
+
+TEST(LightRecordings, CurvesAreCleanedAsFitsOfCellsCleanThem) {
+  const auto floor = read(curve_of_36_cells(1, "21.6,-0.01\n22,-0.01\n22.4,-0.01\n22.8,-0.01\n"));
+  EXPECT_EQ(floor.rows(), 30u);
+  EXPECT_EQ(floor.rows_read, 34);
+  EXPECT_EQ(floor.rejected.at("beyond open circuit"), 4);
+  const auto dead = read(curve_of_36_cells(1, "0.1,0\n0.2,0.0\n14,0\n"));
+  EXPECT_EQ(dead.rows(), 30u);
+  EXPECT_EQ(dead.rejected.at("no current where others flow"), 2);
+  EXPECT_EQ(dead.rejected.at("outlier"), 1);
+  const auto reversed = read(curve_of_36_cells(-1, ""));
+  EXPECT_TRUE(reversed.is_reversed);
+  EXPECT_NEAR(reversed.current_A[0], 5.598, 1e-12);
+}
+
+// With a dark cell the current vanishes far below the last voltage.
+TEST(LightRecordings, TheTailOfADarkCellIsKept) {
+  const auto dark = read(curve_of_36_cells(1, "26,0.008\n28,0.006\n30,0.004\n32,0.002\n"));
+  EXPECT_EQ(dark.rows(), 34u);
 }
 
 TEST(LightRecordings, ColumnsMayHaveNamesOfTheFiles) {

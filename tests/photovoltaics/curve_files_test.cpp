@@ -53,6 +53,22 @@ TEST(PhotovoltaicFit, ATailThatTheMeterMadeIsLeftOut) {
   }
 }
 
+TEST(PhotovoltaicFit, DeadReadingsBelowAFlowingCurrentAreLeftOut) {
+  IvSweep sweep = clipped_curve(0.0, 3);
+  for (const size_t i : {0u, 1u, 2u, 30u, 31u}) sweep.current_A[i] = 0.0;
+  const CurveCleaning cleaning = clean_curve(sweep);
+  EXPECT_EQ(cleaning.dead, 5u);
+  EXPECT_EQ(cleaning.spikes, 0u);
+  EXPECT_EQ(cleaning.kept.size(), sweep.voltage_V.size());
+  EXPECT_EQ(cleaning.kept.front(), 3u);
+  EXPECT_NEAR(fit_sweeps(std::array{sweep}, {}).diode.photocurrent_A.value, 8.0, 0.01);
+  // A curve that is not cleaned: the refusal names the reading.
+  IvSweep dead = clipped_curve(0.0, 3);
+  dead.current_A[0] = 0.0;
+  EXPECT_THAT(refusal_of([&] { fit_sweeps(std::array{dead}, {}); }),
+              testing::HasSubstr("0 A at 0 V"));
+}
+
 TEST(PhotovoltaicFit, CurvesThatGoOnBeyondTheirEndsStayWhole) {
   ivcurves::Truth truth{8.0, 1e-9, 5e-3, 50.0, 1.1, 1};
   const CellCurve cell(truth.parameters());
@@ -129,6 +145,18 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
            {"Vmod;Imod;\n0,1 V;500 mA;\n0,2 V;400 mA;\nIsc;0,5\nEnd of data\n"},
            {"Voltage (V) Current (mA)\n0.1 500\n0.2 400\n"},
            {"V [V],J [mA/cm^2]\n0.1,500\n0.2,400\n"},
+           {"Vset,Vmeas,Imeas\n9,0.1,0.5\n9,0.2,0.4\n"},
+           {"Vset,Imeas\n0.1,0.5\n0.2,0.4\n"},
+           {"VA,IA\n0.1,0.5\n0.2,0.4\n"},
+           // Names of unknown words with a known unit.
+           {"Index,Potential applied (V),WE(1).Current (mA)\n1,0.1,500\n2,0.2,400\n"},
+           {"time/s,Ewe/V,<I>/mA\n1,0.1,500\n2,0.2,400\n"},
+           {"Bias voltage (V),Photocurrent (mA),Dark Current (mA)\n0.1,500,1\n0.2,400,2\n"},
+           {"Voc (V),V_FW (mV),Error (A),Current\n9,100,9,0.5\n9,200,9,0.4\n"},
+           {"E (V),J_FW (mA cm-2)\n0.1,500\n0.2,400\n"},
+           {"U_in_V,J_in_mA_cm2\n0.1,500\n0.2,400\n"},
+           {"V (V),J (mA*cm^-2)\n0.1,500\n0.2,400\n"},
+           {"Potential (V),J (mA cm⁻²)\n0.1,500\n0.2,400\n"},
            {"voltage_mV,current_mA\n100,500\n150,NaN\n200,400\n250,9.91E37\n"},
            {"voltage_V,current_A,irradiance_W_m2,Temperature "
             "(C)\n0.1,0.5,900,24\n0.2,0.4,1100,26\n",
@@ -173,6 +201,21 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
   EXPECT_FALSE(is_curve_header("t,motor voltage,motor current,omega"));
   EXPECT_THAT(message("V,I,V,I\n0.1,0.5,0.1,0.4\n"),
               testing::HasSubstr("second column of this quantity"));
+  // Several currents beside one voltage are several curves, several voltages are ambiguous.
+  const auto scans =
+      curves_in("Voltage (V),Forward (mA),Reverse (A)\n0.1,500,0.4\n0.2,400,0.3\n", "x");
+  ASSERT_EQ(scans.size(), 2u);
+  EXPECT_NEAR(scans[0].sweep.current_A[1], 0.4, 1e-15);
+  EXPECT_NEAR(scans[1].sweep.current_A[0], 0.4, 1e-15);
+  EXPECT_NEAR(scans[1].sweep.voltage_V[1], 0.2, 1e-15);
+  EXPECT_THAT(
+      message("Bias (V),Probe (V),I\n0.1,0.1,0.5\n"),
+      testing::HasSubstr("found \"Bias (V)\", \"Probe (V)\", expected one voltage: rename"));
+  EXPECT_THAT(message("sweep,V,Front (A),Rear (A)\n1,0.1,0.1,0.5\n"),
+              testing::HasSubstr("found \"Front (A)\", \"Rear (A)\", expected one current"));
+  EXPECT_THAT(message("Voc (V),Isc (A)\n0.6,8\n"), testing::HasSubstr("a header that names"));
+  EXPECT_TRUE(is_curve_header("Voltage (V),Forward (mA),Reverse (mA)"));
+  EXPECT_FALSE(is_curve_header("t,motor voltage (V),motor current (A)"));
   EXPECT_THAT(message("V,I\n0.1,a\n"), testing::HasSubstr("curve.csv:2"));
   EXPECT_THAT(message("V,I,temperature\n0.1,0.5,25\n"), testing::HasSubstr("K or °C"));
 }

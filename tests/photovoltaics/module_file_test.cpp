@@ -102,6 +102,33 @@ TEST(ModuleFile, APanFileGivesItsListedFigures) {
   EXPECT_NEAR((warm.maximum_A * warm.maximum_V / stc_W - 1.0) / 10.0, -0.290e-2, 0.1e-3);
 }
 
+std::string changed(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+// The gap of a silicon heterojunction is that of silicon.
+TEST(ModuleFile, HeterojunctionsAndRibbonsAreOfSilicon) {
+  const double gap_eV = module_in(pan, "one.PAN", "").cell.gap_eV;
+  for (const char* technology : {"mtHIT", "mtEFG"}) {
+    EXPECT_EQ(module_in(changed(pan, "mtSiMono", technology), "one.PAN", "").cell.gap_eV, gap_eV);
+  }
+}
+
+// The figures and slopes of the file are met although its circuit has a term more.
+TEST(ModuleFile, APanFileWithRecombinationGivesItsRatedFigures) {
+  const ListedModule m =
+      module_in(changed(changed(pan, "mtSiMono", "mtCdTe"), "Gamma", "D2MuTau=0.5\r\n  Gamma"),
+                "film.PAN", "");
+  EXPECT_THAT(m.note, testing::HasSubstr("D2MuTau = 0.5"));
+  const RatedPoint p = m.predict(1000.0, 298.15), warm = m.predict(1000.0, 308.15);
+  EXPECT_NEAR(p.short_circuit_A / 18.67, 1.0, 1e-4);
+  EXPECT_NEAR(p.open_circuit_V / 49.04, 1.0, 1e-4);
+  EXPECT_NEAR(p.maximum_A / 17.61, 1.0, 1e-3);
+  EXPECT_NEAR(p.maximum_V / 40.89, 1.0, 1e-3);
+  EXPECT_NEAR(warm.open_circuit_V - p.open_circuit_V, -1.378, 0.01);
+  EXPECT_NEAR(warm.short_circuit_A - p.short_circuit_A, 0.0837, 1e-3);
+}
+
 std::string message(const std::string& text, const std::string& name) {
   return refusal_of([&] { module_in(text, "modules.csv", name); });
 }
@@ -112,12 +139,8 @@ TEST(ModuleFile, MissingAndAmbiguousNamesAreRejected) {
   EXPECT_THAT(message(library, ""), testing::HasSubstr("module_name"));
   EXPECT_THAT(message("voltage_V,current_A\n1,2\n", "x"), testing::HasSubstr("PVObject_=pvModule"));
   EXPECT_THAT(message("Name,N_s,A_c\nOne,60,1.6\n", "One"), testing::HasSubstr("I_sc_ref"));
-  std::string amorphous = pan;
-  amorphous.replace(amorphous.find("mtSiMono"), 8, "mtaSiHTan");
-  EXPECT_THAT(message(amorphous, ""), testing::HasSubstr("Technol"));
-  std::string leaky = pan;
-  leaky.replace(leaky.find("RShunt=1000"), 11, "RShunt=2");
-  EXPECT_THAT(message(leaky, ""), testing::HasSubstr("RShunt"));
+  EXPECT_THAT(message(changed(pan, "mtSiMono", "mtaSiHTan"), ""), testing::HasSubstr("Technol"));
+  EXPECT_THAT(message(changed(pan, "RShunt=1000", "RShunt=2"), ""), testing::HasSubstr("RShunt"));
 }
 
 }  // namespace

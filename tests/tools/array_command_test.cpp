@@ -254,6 +254,26 @@ TEST_F(ArrayCommand, CellsThatNoVoltageGoesWithAreRefused) {
   }
 }
 
+// One cell of n V_t 8 mV, an ideality of 0.31: no number of cells makes it that of a junction.
+TEST_F(ArrayCommand, CurvesSharperThanAnyJunctionAreRefusedAsSuch) {
+  std::string rows = "voltage_V,current_A\n";
+  for (int i = 0; i <= 60; ++i) {
+    const double volt = 0.01 * i;
+    rows +=
+        std::to_string(volt) + "," + std::to_string(1.0 - std::exp((volt - 0.6) / 0.008)) + "\n";
+  }
+  write("sharp.csv", rows);
+  write("fit.toml", "[fit]\ncurves = [\"sharp.csv\"]\n");
+  const std::string got = refused("fit-cell " + at("fit.toml") + " --out " + at("out"));
+  EXPECT_THAT(got, HasSubstr("fit.curves: found an ideality of 0.31"));
+  EXPECT_THAT(got, HasSubstr("the curve of one diode"));
+  // Half the voltage of a junction: the number of cells is wrong.
+  write("tight.csv", tight_curve());
+  write("fit.toml", "[fit]\ncurves = [\"tight.csv\"]\ncells_in_series = 4\n");
+  EXPECT_THAT(refused("fit-cell " + at("fit.toml") + " --out " + at("out")),
+              HasSubstr("fit.cells_in_series: found 4 cells"));
+}
+
 TEST_F(ArrayCommand, WrongFitsAreOneLineAndLeaveNothing) {
   write("words.csv", "voltage_V,current_A\n0,1\n0.1,x\n");
   write("words.toml", "[fit]\ncurves = [\"words.csv\"]\n");

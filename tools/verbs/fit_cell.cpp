@@ -45,8 +45,9 @@ void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
       task.notes.push_back(name + ": current densities; the parameters are those of 1 cm²");
     }
     if (!curve.stated.empty()) task.notes.push_back(name + ": " + curve.stated + " by its header");
-    const CurveCleaning cleaning = clean_curve(curve.sweep);
+    const CurveCleaning cleaning = clean_curve(curve.sweep, task.substrings > 0);
     note(cleaning.spikes, "readings far from both neighbours");
+    note(cleaning.dead, "readings of 0 A below voltages at which a current flows");
     note(cleaning.clipped, "points from " + show(cleaning.clipped_from_V) +
                                " V on, beyond open circuit, where the meter stays at " +
                                show(cleaning.clipped_A) + " A");
@@ -109,10 +110,8 @@ void read_curves(const Settings& s, const fs::path& folder, FitTask& task) {
   if (are_repeats(task.conditions)) task.conditions.clear();
 }
 
-// Checks the open-circuit voltage per cell: between 0.3 V (moonlight) and 4.5 V (best
-// multi-junction cells).
-void check_cells(const Settings& s, const FitTask& task) {
-  if (task.substrings > 0 && task.cells_in_series == 1) return;  // not stated
+// The open-circuit voltage of the device, at least that of its readings with a forward current.
+double open_circuit_V(const FitTask& task) {
   double open_V = 0.0;
   for (const RatedPoint& p : task.datasheet) open_V = std::max(open_V, p.open_circuit_V);
   for (const IvSweep& sweep : task.sweeps) {
@@ -120,6 +119,14 @@ void check_cells(const Settings& s, const FitTask& task) {
       if (sweep.current_A[i] >= 0.0) open_V = std::max(open_V, sweep.voltage_V[i]);
     }
   }
+  return open_V;
+}
+
+// Checks the open-circuit voltage per cell: between 0.3 V (moonlight) and 4.5 V (best
+// multi-junction cells).
+void check_cells(const Settings& s, const FitTask& task) {
+  if (task.substrings > 0 && task.cells_in_series == 1) return;  // not stated
+  const double open_V = open_circuit_V(task);
   constexpr double lowest_V = 0.1, highest_V = 5.0;
   const double one_V = open_V / task.cells_in_series;
   if (open_V == 0.0 || (one_V >= lowest_V && one_V <= highest_V)) return;
@@ -203,6 +210,15 @@ void check_ideality(const SingleDiode& d, const FitTask& task) {
   const double ideality = d.scale_V.value / task.thermal_V();
   constexpr double lowest = 0.5, highest = 4.0;
   if (ideality >= lowest && ideality <= highest) return;
+  // With fewer cells the ideality of one is larger, but so is its voltage.
+  constexpr double junction_V = 0.3;
+  if (ideality < lowest && open_circuit_V(task) > junction_V * task.cells_in_series) {
+    throw InputError({}, task.datasheet.empty() ? "fit.curves" : "fit.datasheet",
+                     "an ideality of " + show(ideality) + " for each of " +
+                         std::to_string(task.cells_in_series) + " cells",
+                     "the curve of one diode (an ideality of 1 to 2): this one falls faster near "
+                     "open circuit, or the number of cells in series is smaller");
+  }
   throw InputError({}, "fit.cells_in_series",
                    std::to_string(task.cells_in_series) +
                        " cells, which makes the ideality of one " + show(ideality),
@@ -486,6 +502,7 @@ Product list_module(const ListedModule& module, const Console& console) {
                (module.strings > 1 ? ", " + std::to_string(module.strings) + " in parallel" : ""));
   console.line("  maximum power " + show(given_W) + " W, listed " + show(listed_W) + " W, at " +
                show(rated.irradiance_W_m2) + " W/m² and " + show(rated.temperature_K) + " K");
+  if (!module.note.empty()) console.line("  note: " + module.note);
   constexpr double usual = 0.01;
   if (std::abs(given_W - listed_W) > usual * listed_W) {
     console.line("  warning: the circuit and the listed maximum power differ by " +

@@ -314,6 +314,7 @@ LightRecording curves_of_instrument(const std::filesystem::path& path,
     append(all.lab_from_body, usual.lab_from_body);
     append(all.temperature_K, curve.temperature_K.value_or(usual.temperature_K));
     if (has_light) append(all.irradiance_W_m2, curve.irradiance_W_m2.value_or(absent));
+    all.is_reversed = all.is_reversed || curve.is_reversed;
     all.has_temperatures = all.has_temperatures && curve.temperature_K.has_value();
     unread += static_cast<int64_t>(curve.unread);
   }
@@ -323,6 +324,45 @@ LightRecording curves_of_instrument(const std::filesystem::path& path,
     throw InputError({path.string()}, "rows", "no usable row", "at least one row of numbers");
   }
   return all;
+}
+
+// The rows of each curve, in order of their first rows.
+std::vector<std::vector<size_t>> rows_of_sweeps(const LightRecording& recording) {
+  std::map<int, size_t> places;
+  std::vector<std::vector<size_t>> rows;
+  for (size_t i = 0; i < recording.rows(); ++i) {
+    const auto [place, is_new] = places.try_emplace(recording.sweep[i], rows.size());
+    if (is_new) rows.emplace_back();
+    rows[place->second].push_back(i);
+  }
+  return rows;
+}
+
+// Reverses and cleans each curve.
+LightRecording with_clean_curves(LightRecording recording) {
+  std::vector<size_t> kept;
+  const auto count = [&](const std::string& reason, size_t readings) {
+    if (readings > 0) recording.rejected[reason] += static_cast<int64_t>(readings);
+  };
+  for (const std::vector<size_t>& rows : rows_of_sweeps(recording)) {
+    IvSweep sweep;
+    for (const size_t i : rows) {
+      sweep.voltage_V.push_back(recording.voltage_V[i]);
+      sweep.current_A.push_back(recording.current_A[i]);
+    }
+    if (reverse_negative(sweep)) {
+      recording.is_reversed = true;
+      for (const size_t i : rows) recording.current_A[i] = -recording.current_A[i];
+    }
+    const CurveCleaning cleaning = clean_curve(sweep, true);
+    for (const size_t k : cleaning.kept) kept.push_back(rows[k]);
+    count("outlier", cleaning.spikes);
+    count("no current where others flow", cleaning.dead);
+    count("beyond open circuit", cleaning.clipped);
+  }
+  if (kept.size() == recording.rows()) return recording;
+  std::ranges::sort(kept);
+  return recording.part(kept);
 }
 
 }  // namespace
@@ -346,18 +386,13 @@ LightRecording LightRecording::part(const std::vector<size_t>& rows) const {
 }
 
 std::vector<LightRecording> sweeps_of(const LightRecording& recording) {
-  std::vector<int> numbers;
-  std::map<int, std::vector<size_t>> rows;
-  for (size_t i = 0; i < recording.rows(); ++i) {
-    if (!rows.contains(recording.sweep[i])) numbers.push_back(recording.sweep[i]);
-    rows[recording.sweep[i]].push_back(i);
-  }
+  const std::vector<std::vector<size_t>> all = rows_of_sweeps(recording);
   std::vector<LightRecording> curves;
-  for (const int number : numbers) {
-    curves.push_back(numbers.size() > 1 ? recording.part(rows[number]) : recording);
-    if (numbers.size() == 1) break;
-    curves.back().name += ", sweep " + std::to_string(number);
-    curves.back().rows_read = static_cast<int64_t>(rows[number].size());
+  for (const std::vector<size_t>& rows : all) {
+    curves.push_back(all.size() > 1 ? recording.part(rows) : recording);
+    if (all.size() == 1) break;
+    curves.back().name += ", sweep " + std::to_string(recording.sweep[rows.front()]);
+    curves.back().rows_read = static_cast<int64_t>(rows.size());
     curves.back().rejected.clear();
   }
   // Counts rejected rows of the file only once.
@@ -397,7 +432,7 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   if (beginning.is_curve) {
     LightRecording curves = curves_of_instrument(path, usual, options);
     curves.absent_columns = absent_of(options.columns, beginning.cells);
-    return curves;
+    return with_clean_curves(std::move(curves));
   }
   const std::optional<LightHeader>& header = beginning.header;
   if (!header) {
@@ -448,6 +483,7 @@ LightRecording read_light_recording(const std::filesystem::path& path,
                      "a lamp current above 0, or no such column");
   }
   make_relative(recording.lamp_light);
+  if (recording.kind == LightRecording::Kind::sweep) return with_clean_curves(std::move(recording));
   return recording;
 }
 

@@ -3,7 +3,8 @@
 //
 // CSV (also .csv.gz) with columns in any order and comments after #. Unreadable rows are omitted
 // and counted; outliers are detected later, relative to a model (diagnosis/light/diagnose.h).
-// Sweeps may have instrument formats, which photovoltaics/fit/curve_text.h reads.
+// Sweeps may have instrument formats, which photovoltaics/fit/curve_text.h reads; all sweeps are
+// reversed and cleaned as that file describes.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +43,8 @@ struct LightRecording {
 
   // False: all rows have the value of the experiment.
   bool has_attitudes = true, has_temperatures = true;
-  int64_t rows_read = 0;                    // data rows in the file
+  int64_t rows_read = 0;     // data rows in the file
+  bool is_reversed = false;  // a current was counted into the module; it is positive here
   std::map<std::string, int64_t> rejected;  // by reason: "torn row", "unreadable", …
   std::set<std::string> absent_columns;     // columns that are named but absent
   size_t rows() const { return lab_from_body.size(); }

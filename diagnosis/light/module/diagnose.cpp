@@ -143,9 +143,14 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   const ModuleNominal nominal = nominal_module(design);
   ModuleData data;
   DataQuality quality;
+  std::vector<std::string> warnings;
   const auto read = [&](const std::vector<LightRecording>& files, std::vector<ModuleRun>& runs) {
     for (const LightRecording& file : files) {
       require_curve(file);
+      if (file.is_reversed) {
+        warnings.push_back(std::filesystem::path(file.name).filename().string() +
+                           ": currents are negative in light; counted the other way round");
+      }
       for (const LightRecording& curve : sweeps_of(file)) {
         runs.push_back(run_of(curve, design, nominal, quality));
         data.whole.push_back(runs.back());
@@ -191,6 +196,7 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
     compare_with_sensor(design, data.train, light, d);
   }
   d.data = quality;
+  d.warnings.insert(d.warnings.end(), warnings.begin(), warnings.end());
   const Verdict before = d.verdict;
   judge_references(design, nominal, recordings, d);
   if (d.verdict != before) d.sentence = module_sentence(d);

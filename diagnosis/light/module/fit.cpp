@@ -109,16 +109,25 @@ ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<
     parameters.of_run.push_back({{"light", "ln", first, light, 1.0, light - 5.0, light + 5.0},
                                  {"temperature", "", 0.0, 0.0, 1.0, -20.0, 20.0}});
   }
-  // Near the condition of the reference, translation is not identifiable.
-  constexpr double no_distance = 0.02;
-  const bool translates = std::ranges::any_of(
-      runs, [&](const ModuleRun& run) { return distance_of(nominal_, run.sweep) > no_distance; });
+  // Near the condition of the reference, translation is not identifiable. A fitted temperature is
+  // only an estimate: it must differ by 5 K.
+  constexpr double no_distance = 0.02, no_fitted_distance = 0.2;
+  const auto distance = [&](const ModuleSweep& sweep, double temperature_K) {
+    return distance_of(nominal_, sweep.light, temperature_K);
+  };
+  const bool any_is_far = std::ranges::any_of(runs, [&](const ModuleRun& run) {
+    return distance(run.sweep, run.sweep.temperature_K) > no_distance;
+  });
   const inference::ResidualModel model(parameters, [&](const VectorXd& x, Index run, VectorXd& r,
                                                        MatrixXd* slopes) {
     const ModuleRun& of = runs[static_cast<size_t>(run)];
     r = residuals(h, x, of);
     if (slopes == nullptr) return;
     slopes->resize(r.size(), x.size());
+    const bool translates =
+        any_is_far ||
+        distance(of.sweep, acting(design_, nominal_, h, of.sweep, x).state.temperature_K) >
+            no_fitted_distance;
     for (Index k = 0; k < x.size(); ++k) {
       const Index shared = k - of_curve;
       if (!translates && shared >= of_cell && shared < of_module) {

@@ -316,10 +316,9 @@ ModuleCell moved(const ModuleNominal& nominal, const ModuleNominal::Numbers& z) 
   return cell;
 }
 
-double distance_of(const ModuleNominal& nominal, const ModuleSweep& sweep) {
+double distance_of(const ModuleNominal& nominal, double light, double temperature_K) {
   constexpr double step_K = 25.0;
-  return std::hypot(std::log(sweep.light),
-                    (sweep.temperature_K - nominal.cell.temperature_K) / step_K);
+  return std::hypot(std::log(light), (temperature_K - nominal.cell.temperature_K) / step_K);
 }
 
 ModuleNominal nominal_module(const ModuleDesign& design) {
@@ -336,7 +335,8 @@ double misfit_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
   // Correction for one or two references: with few correlation lengths they determine their misfit
   // only to a third.
   constexpr double of_curves = 1.33;
-  return std::hypot(of_curves * nominal.misfit, translation_misfit * distance_of(nominal, sweep)) *
+  const double distance = distance_of(nominal, sweep.light, sweep.temperature_K);
+  return std::hypot(of_curves * nominal.misfit, translation_misfit * distance) *
          nominal.cell.photocurrent_A * sweep.light;
 }
 

@@ -44,9 +44,9 @@ ModuleWiring wiring_of(const ModuleDesign& design);
 // The cell with its parameters shifted by root · z.
 ModuleCell moved(const ModuleNominal& nominal, const ModuleNominal::Numbers& z);
 
-// Distance of a curve from the reference: root sum of squares of e-folds of light and steps of 25
-// K.
-double distance_of(const ModuleNominal& nominal, const ModuleSweep& sweep);
+// Distance of a condition from the reference: root sum of squares of e-folds of light and steps of
+// 25 K.
+double distance_of(const ModuleNominal& nominal, double light, double temperature_K);
 
 // The nominal module from the references or the datasheet. Throws InputError for references that no
 // diode fits.
