@@ -10,12 +10,12 @@ namespace photorque {
 
 AxisReadings angles_about(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   AxisReadings read;
-  const std::vector<double> angles_rad = rows.angles_rad(axis);
+  const std::vector<double> angles_rad = rows.angles_rad(axis, first, last);
   for (size_t i = first; i < last; ++i) {
-    if (std::isnan(angles_rad[i])) continue;
+    if (std::isnan(angles_rad[i - first])) continue;
     read.row.push_back(i);
     read.time_s.push_back(rows.time_s[i]);
-    read.value.push_back(angles_rad[i]);
+    read.value.push_back(angles_rad[i - first]);
   }
   return read;
 }

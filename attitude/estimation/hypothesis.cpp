@@ -95,18 +95,9 @@ void put_place(const Observation& seen, double* place) {
   }
 }
 
-// Initial angle about the only axis, with whole turns; zero for other platforms. Without attitudes,
-// angle zero is the centre of the swing, which the rates alone determine.
-double first_angle_rad(const Platform& platform, const Observation& seen) {
-  if (seen.first_angle_rad) return *seen.first_angle_rad;
-  if (!platform.turns_about_one_axis() || platform.slides()) return 0.0;
-  const AxisReadings swing = angles_of_swing(seen, platform.axis);
-  return swing.value.empty() ? 0.0 : swing.value.front();
-}
-
-}  // namespace
-
-PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
+// Initial conditions of a run from its first readings.
+RunStart first_start(const AttitudeModel& model, const Observation& seen,
+                     const std::vector<double>& own) {
   const auto has_attitude = [&](size_t i) { return seen.attitude_rows[i] > 0.0; };
   const size_t first = first_block(seen, 0, has_attitude),
                next = first_block(seen, first + 1, has_attitude);
@@ -122,21 +113,30 @@ PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
   }
   const Platform& platform = model.platform;
   if (platform.turns_about_one_axis()) rate = platform.axis.dot(rate) * platform.axis;
+  Quat attitude = Quat::Identity();
+  double turned_rad = 0.0;
+  if (first < seen.blocks()) {
+    const double back_s = seen.time_s.front() - seen.time_s[first];
+    attitude = seen.attitude[first] * turn_by(back_s * rate);
+    if (seen.first_angle_rad) turned_rad = *seen.first_angle_rad + back_s * platform.axis.dot(rate);
+  } else if (platform.turns_about_one_axis() && !platform.slides()) {
+    // Without attitudes, angle zero is the centre of the swing, which the rates alone determine.
+    const AxisReadings swing = angles_of_swing(seen, platform.axis);
+    if (!swing.value.empty()) turned_rad = swing.value.front();
+    attitude = Eigen::AngleAxisd(turned_rad, platform.axis);
+  }
   const Dynamics dynamics(model);
-  PlatformState state = dynamics.initial_state(rate, first_angle_rad(platform, seen));
+  PlatformState state = dynamics.initial_state(rate, turned_rad);
   if (const int place = dynamics.first_of_translation(); place >= 0) {
     put_place(seen, &state.extra[static_cast<size_t>(place - component::extra)]);
   }
   state.time_s = seen.time_s.front();
   state.charge_drawn_C = seen.initial_charge_C;
-  if (first == seen.blocks()) {
-    state.lab_from_body = Eigen::AngleAxisd(first_angle_rad(platform, seen), platform.axis);
-    return state;
-  }
-  const double back_s = seen.time_s.front() - seen.time_s[first];
-  state.lab_from_body = seen.attitude[first] * turn_by(back_s * rate);
-  return state;
+  state.lab_from_body = attitude;
+  return {state, own, turned_rad};
 }
+
+}  // namespace
 
 std::vector<RunStart> starts_from_data(const Hypothesis& h, const std::vector<Observation>& runs) {
   std::vector<double> own;
@@ -144,9 +144,7 @@ std::vector<RunStart> starts_from_data(const Hypothesis& h, const std::vector<Ob
     if (f.per_run) own.push_back(f.mean);
   }
   std::vector<RunStart> starts;
-  for (const Observation& seen : runs) {
-    starts.push_back({first_state(h.model, seen), own, first_angle_rad(h.model.platform, seen)});
-  }
+  for (const Observation& seen : runs) starts.push_back(first_start(h.model, seen, own));
   return starts;
 }
 

@@ -63,9 +63,6 @@ struct Hypothesis {
 // values.
 void adapt_to_runs(Hypothesis& h, const std::vector<Observation>& runs);
 
-// Initial conditions of a run from its first readings.
-PlatformState first_state(const AttitudeModel& model, const Observation& seen);
-
 // Initial conditions of all runs from their first readings, with the per-run parameters at their
 // prior means.
 std::vector<RunStart> starts_from_data(const Hypothesis& h, const std::vector<Observation>& runs);

@@ -150,8 +150,14 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
   }
   const double blocks_per_row =
       static_cast<double>(max_blocks) / static_cast<double>(rows.blocks());
+  // The angles are counted once, not from the first row for each segment.
+  const bool counts_turns = rows.first_angle_rad.has_value();
+  const std::vector<double> angles_rad =
+      counts_turns ? rows.angles_rad(platform.axis, 0, rows.blocks()) : std::vector<double>();
+  rows.first_angle_rad.reset();
   size_t first = 0;
   const auto close = [&](size_t end) {
+    if (end == first) return;
     size_t last = end;
     if (turns_alone && !is_commanded(rows.schedule)) {
       const size_t sets_off = start_of_motion(rows, platform.axis, first, last);
@@ -181,7 +187,11 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
     }
     if (last > first && rows.readings(first, last) >= min_readings) {
       const auto blocks = static_cast<size_t>(blocks_per_row * static_cast<double>(last - first));
-      result.all.push_back(rows.part(first, last).averaged(std::max(min_readings, blocks)));
+      Observation segment = rows.part(first, last);
+      for (size_t i = first; i < last && counts_turns && !segment.first_angle_rad; ++i) {
+        if (!std::isnan(angles_rad[i])) segment.first_angle_rad = angles_rad[i];
+      }
+      result.all.push_back(segment.averaged(std::max(min_readings, blocks)));
     } else {
       result.too_short += last > first ? 1 : 0;
     }

@@ -12,9 +12,14 @@ namespace photorque {
 
 std::vector<Passage> passages(const std::vector<double>& time_s, const std::vector<double>& values,
                               double least) {
-  constexpr double far = 0.2;
-  double nearby = 0.0, extreme = 0.0;
-  for (const double value : values) nearby = std::max(nearby, std::abs(value));
+  constexpr double far = 0.2, most_of_usual = 4.0;
+  std::vector<double> sizes;
+  for (const double value : values) {
+    if (std::abs(value) >= least) sizes.push_back(std::abs(value));
+  }
+  if (sizes.empty()) return {};
+  const double usual = upper_median(std::move(sizes));
+  double nearby = usual, extreme = 0.0;
   std::vector<Passage> all;
   int side = 0;
   size_t before = 0;
@@ -26,7 +31,7 @@ std::vector<Passage> passages(const std::vector<double>& time_s, const std::vect
       const double part = first / (first - second);
       all.push_back(
           {before, time_s[before] + part * (time_s[before + 1] - time_s[before]), extreme});
-      nearby = extreme;
+      nearby = std::min(extreme, most_of_usual * usual);
       extreme = 0.0;
     }
     if (now != 0) side = now;
@@ -301,6 +306,7 @@ double agm(double a, double b) {
 // A period of a swing, between every second passage through its centre, and its amplitude.
 struct Period {
   double period_s = 0.0, amplitude_rad = 0.0;
+  double least_rad = 0.0;  // the smaller extreme on the two sides
 };
 
 std::vector<Period> periods_of(const AxisReadings& read) {
@@ -308,7 +314,8 @@ std::vector<Period> periods_of(const AxisReadings& read) {
   std::vector<Period> all;
   for (size_t i = 2; i < passed.size(); ++i) {
     all.push_back({passed[i].time_s - passed[i - 2].time_s,
-                   0.5 * (passed[i - 1].extreme + passed[i].extreme)});
+                   0.5 * (passed[i - 1].extreme + passed[i].extreme),
+                   std::min(passed[i - 1].extreme, passed[i].extreme)});
   }
   return all;
 }
@@ -323,7 +330,8 @@ RestoringLaw law_of_periods(const AxisReadings& read) {
   std::vector<double> of_spring, of_weight;
   for (const Period& p : periods) {
     // A weight that turns back on both sides lies between the highest positions, a turn apart.
-    if (p.amplitude_rad > pi) return RestoringLaw::spring;
+    if (p.least_rad > pi) return RestoringLaw::spring;
+    if (p.amplitude_rad > pi) return RestoringLaw::unclear;
     of_spring.push_back(std::log(p.period_s));
     of_weight.push_back(of_spring.back() + std::log(agm(1.0, std::cos(0.5 * p.amplitude_rad))));
   }

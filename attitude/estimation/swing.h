@@ -14,7 +14,8 @@ struct Passage {
   double extreme = 0.0;  // largest magnitude since the passage before
 };
 // Passages between values of at least a fifth of the extreme before, and at least `least`, on one
-// side and on the other. Noise near zero and at rest does not count.
+// side and on the other. Noise near zero and at rest does not count. The extreme counts as at most
+// four times the median size of the values above `least`, so that no outlier hides what follows.
 std::vector<Passage> passages(const std::vector<double>& time_s, const std::vector<double>& values,
                               double least);
 

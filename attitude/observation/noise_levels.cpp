@@ -144,7 +144,7 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
   const double step = steps.empty() ? 0.0 : *std::min_element(steps.begin(), steps.end()),
                rounding = step / std::sqrt(12.0);
   // Third differences of rounding errors are at most four steps, also where the errors alternate.
-  constexpr double most_steps = 4.5, beyond = 0.01;
+  constexpr double most_steps = 4.5, beyond = 0.002;
   const double most = most_steps * step / std::sqrt(20.0);
   const auto larger =
       std::ranges::count_if(sizes[lowest_order], [=](double d) { return d > most; });

@@ -159,17 +159,21 @@ size_t Observation::readings(size_t first, size_t last) const {
   return count;
 }
 
-std::vector<double> Observation::angles_rad(const Vec3& axis) const {
-  std::vector<double> angles_rad(blocks(), NAN);
+std::vector<double> Observation::angles_rad(const Vec3& axis, size_t first, size_t last) const {
+  std::vector<double> angles_rad(last - first, NAN);
   double angle_rad = 0.0;
   const Quat* before = nullptr;
-  for (size_t i = 0; i < blocks(); ++i) {
+  for (size_t i = first; i < last; ++i) {
     if (!(attitude_rows[i] > 0.0)) continue;
-    angle_rad = before != nullptr
-                    ? angle_rad + axis.dot(turn_vector(attitude[i] * before->conjugate()))
-                    : first_angle_rad.value_or(axis.dot(turn_vector(attitude[i])));
+    if (before != nullptr) {
+      angle_rad += axis.dot(turn_vector(attitude[i] * before->conjugate()));
+    } else {
+      angle_rad = axis.dot(turn_vector(attitude[i]));
+      const double turned_rad = first == 0 ? first_angle_rad.value_or(angle_rad) : angle_rad;
+      angle_rad += 2.0 * pi * std::round((turned_rad - angle_rad) / (2.0 * pi));
+    }
     before = &attitude[i];
-    angles_rad[i] = angle_rad;
+    angles_rad[i - first] = angle_rad;
   }
   return angles_rad;
 }
@@ -223,7 +227,7 @@ Observation observe(const Recording& recording, const std::string& name, const P
   }
   if (platform.turns_about_one_axis()) {
     seen.only_axis = platform.axis;
-    std::vector<double> angles_rad = seen.angles_rad(platform.axis);
+    std::vector<double> angles_rad = seen.angles_rad(platform.axis, 0, seen.blocks());
     std::erase_if(angles_rad, [](double angle) { return std::isnan(angle); });
     if (!angles_rad.empty()) {
       const double turns = std::round(upper_median(angles_rad) / (2.0 * pi));
@@ -280,7 +284,7 @@ Observation Observation::part(size_t first, size_t last) const {
     cut(result.scalar[s].rows, scalar[s].rows);
   }
   if (first_angle_rad) {
-    const std::vector<double> angles = angles_rad(only_axis);
+    const std::vector<double> angles = angles_rad(only_axis, 0, last);
     const auto from = std::find_if(angles.begin() + static_cast<std::ptrdiff_t>(first),
                                    angles.end(), [](double angle) { return !std::isnan(angle); });
     if (from != angles.end()) result.first_angle_rad = *from;

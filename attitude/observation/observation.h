@@ -128,9 +128,10 @@ struct Observation {
   // Number of blocks with a reading in [first, last): of an attitude or, if there is none, of a
   // rate or scalar.
   size_t readings(size_t first, size_t last) const;
-  // Angles about an axis with whole turns counted, one per block; NaN: it has no attitude. The
-  // first is `first_angle_rad`, if known, or else within half a turn of zero.
-  std::vector<double> angles_rad(const Vec3& axis) const;
+  // Angles about an axis with whole turns counted, of the blocks [first, last); NaN: it has no
+  // attitude. The first angle is within half a turn of zero; from the first block on it has the
+  // whole turns of `first_angle_rad`.
+  std::vector<double> angles_rad(const Vec3& axis, size_t first, size_t last) const;
   double duration_s() const { return time_s.back() - time_s.front(); }
   // The blocks [first, last), with the charge drawn before them. If the first block is a mean, it
   // is converted to a reading at its centre, as far as its neighbours permit.

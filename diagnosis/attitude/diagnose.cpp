@@ -188,8 +188,13 @@ Replay replay_of(const Fit& fit, const Observation& seen) {
   const PlatformState& initial = fit.best.runs.front().initial;
   const Quat& q = initial.lab_from_body;
   replay.initial_attitude = {q.w(), q.x(), q.y(), q.z()};
-  const double angle_rad = fit.best.model.platform.axis.dot(turn_vector(q));
-  replay.initial_turns = std::round((fit.best.runs.front().turned_rad - angle_rad) / (2.0 * pi));
+  const auto counts_turns = [](const Disturbance& d) {
+    return std::ranges::any_of(d.states, &ExtraState::is_turned_angle);
+  };
+  if (std::ranges::any_of(fit.best.model.disturbances, counts_turns)) {
+    const double angle_rad = fit.best.model.platform.axis.dot(turn_vector(q));
+    replay.initial_turns = std::round((fit.best.runs.front().turned_rad - angle_rad) / (2.0 * pi));
+  }
   replay.initial_rate_rad_s = initial.rate_body_rad_s;
   replay.initial_time_s = initial.time_s;
   replay.initial_charge_C = initial.charge_drawn_C;

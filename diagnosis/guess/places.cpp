@@ -34,18 +34,21 @@ std::optional<Circle> circle_of(const Recording& recording) {
     right += row * d.squaredNorm();
   }
   const Vec3 start = squares.ldlt().solve(right);
+  if (points.size() < 3 || !start.allFinite()) return std::nullopt;
   Eigen::Vector2d centre = mean + start.head<2>();
   double radius_m = std::sqrt(std::max(0.0, start[2] + start.head<2>().squaredNorm()));
   constexpr int rounds = 20;
   constexpr double biweight = 4.685;
+  double reach_m = 0.0;
   for (int round = 0; round < rounds; ++round) {
     std::vector<double> sizes;
     for (const auto& p : points) sizes.push_back(std::abs((p - centre).norm() - radius_m));
-    const double reach_m = std::max(biweight * upper_median(sizes) / normal_median, 1e-300);
+    reach_m = std::max(biweight * upper_median(sizes) / normal_median, 1e-300);
     squares.setZero();
     right.setZero();
     for (const auto& p : points) {
       const Eigen::Vector2d d = p - centre;
+      if (!(d.norm() > 0.0)) continue;
       const double off_m = d.norm() - radius_m,
                    weight = std::pow(std::max(0.0, 1.0 - std::pow(off_m / reach_m, 2)), 2);
       const Vec3 row(d.x() / d.norm(), d.y() / d.norm(), 1.0);
@@ -57,11 +60,13 @@ std::optional<Circle> circle_of(const Recording& recording) {
     centre += step.head<2>();
     radius_m += step[2];
   }
-  double square = 0.0, at = 0.0, low = 0.0, high = 0.0, before = NAN;
+  double square = 0.0, kept = 0.0, at = 0.0, low = 0.0, high = 0.0, before = NAN;
   std::vector<double> angle_rad;
   for (const auto& p : points) {
     const Eigen::Vector2d d = p - centre;
-    square += std::pow(d.norm() - radius_m, 2.0) / static_cast<double>(points.size());
+    if (std::abs(d.norm() - radius_m) > reach_m) continue;
+    square += std::pow(d.norm() - radius_m, 2.0);
+    kept += 1.0;
     const double direction = std::atan2(d.y(), d.x());
     if (std::isfinite(before)) at += std::remainder(direction - before, 2.0 * pi);
     before = direction;
@@ -87,7 +92,7 @@ std::optional<Circle> circle_of(const Recording& recording) {
   }
   // The arc must be higher than the scatter: a straight line is part of any large circle.
   constexpr double max_scatter = 0.02, round_rad = 2.0, scatters = 10.0;
-  const double relative = std::sqrt(square) / radius_m, range_rad = high - low,
+  const double relative = std::sqrt(square / kept) / radius_m, range_rad = high - low,
                height = 1.0 - std::cos(0.5 * std::min(range_rad, pi));
   const bool is_arc = (turns >= 2 && height > scatters * relative) || range_rad > round_rad;
   if (!(radius_m > 0.0) || !(relative < max_scatter) || !is_arc) return std::nullopt;

@@ -193,6 +193,7 @@ class Reader {
       if (is_first && states_units(cells)) continue;
       if (is_first && header_.reading) assign_instrument(cells);
       read_row(cells, 0.0);
+      if (header_.further[current].empty()) continue;
       const Header first = header_;
       for (size_t k = 0; k < first.further[current].size(); ++k) {
         header_.place[current] = first.further[current][k].place;

@@ -76,7 +76,9 @@ Column joined_symbol(std::string_view word) {
     const Column column = symbol == 'i' ? current : voltage;
     if (word.size() < 2) return columns;
     if (word.starts_with(symbol) && is_qualifier(word.substr(1))) return column;
-    if (word.ends_with(symbol) && is_qualifier(word.substr(0, word.size() - 1))) return column;
+    // The symbol ends a longer word: "ai" is an analog input, "av" a mean.
+    const bool is_last = word.size() > 2 && word.ends_with(symbol);
+    if (is_last && is_qualifier(word.substr(0, word.size() - 1))) return column;
   }
   return columns;
 }

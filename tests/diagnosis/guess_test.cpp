@@ -373,7 +373,7 @@ TEST(Guess, AShortArcHasItsRadius) {
     for (int i = 0; i < 400; ++i) {
       const double t = interval_s * i, angle_rad = 0.25 * std::exp(-0.02 * t) * std::cos(2.8 * t);
       text += printed("%.5f,%.5f,%.5f\n", t, radius_m * std::sin(angle_rad) + noise(),
-                      -radius_m * std::cos(angle_rad) + noise() + (i == 7 ? 0.03 : 0.0));
+                      -radius_m * std::cos(angle_rad) + noise() + (i == 7 ? 0.8 : 0.0));
     }
     const std::string toml = guess_experiment({test_file("arc.csv", text)}, ".");
     const auto pivot_m = read_recording_options(settings_in(toml).table("recording")).pivot_m;
@@ -458,18 +458,41 @@ TEST(Guess, NoiseIsNoSpring) {
   EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, 0.1 * stiffness);
 }
 
-// Counts of an encoder. At 14.5 counts per reading, the rounding errors alternate.
-TEST(Guess, AnEncoderHasTheNoiseOfItsStep) {
-  constexpr double step_rev = 1e-3;
-  std::string text = "time (s),angle (revolutions)\n";
-  for (int i = 0; i < 150; ++i) {
-    const double counts = 14.49 * (i - 12.0 * (1.0 - std::exp(-i / 12.0)));
-    text += printed("%.4f,%.3f\n", 0.01 * i, step_rev * std::round(counts));
+// A lost frame is eight times as far away as the spring reaches.
+TEST(Guess, OneLostFrameDoesNotHideASpring) {
+  constexpr double omega_rad_s = 4.0;
+  Noise noise(15, 1e-3);
+  std::string text = "t,x\n";
+  for (int i = 0; i < 600; ++i) {
+    const double t = 0.1 * i;
+    text += printed("%.1f,%.5f\n", t, i == 40 ? 0.4 : 0.05 * std::cos(omega_rad_s * t) + noise());
   }
-  const Settings guessed = settings_in(guess_experiment({test_file("encoder.csv", text)}, "."));
-  constexpr double step_rad = step_rev * 2.0 * pi;
-  EXPECT_NEAR(guessed.table("sensors").table("angle").number("noise_arcsec"),
-              step_rad / std::sqrt(12.0), 0.003 * step_rad);
+  const Settings guessed = settings_in(guess_experiment({test_file("lost.csv", text)}, "."));
+  const std::vector<Settings> effects = guessed.tables("disturbance");
+  ASSERT_EQ(effects.size(), 1U);
+  constexpr double stiffness = omega_rad_s * omega_rad_s;
+  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, 0.1 * stiffness);
+}
+
+// Counts of an encoder. At 14.5 counts per reading, the rounding errors alternate. Noise of 0.6
+// steps before the rounding adds to its variance of a twelfth.
+TEST(Guess, AnEncoderHasTheNoiseOfItsStep) {
+  constexpr double step_rev = 1e-3, step_rad = step_rev * 2.0 * pi;
+  const auto guessed_rad = [&](double noise_steps, uint64_t seed) {
+    Noise noise(seed, std::max(noise_steps, 1e-9));
+    std::string text = "time (s),angle (revolutions)\n";
+    for (int i = 0; i < 600; ++i) {
+      const double counts = 14.49 * (i - 12.0 * (1.0 - std::exp(-i / 12.0))) + noise();
+      text += printed("%.4f,%.3f\n", 0.01 * i, step_rev * std::round(counts));
+    }
+    return settings_in(guess_experiment({test_file("encoder.csv", text)}, "."))
+        .table("sensors")
+        .table("angle")
+        .number("noise_arcsec");
+  };
+  EXPECT_NEAR(guessed_rad(0.0, 1), step_rad / std::sqrt(12.0), 0.003 * step_rad);
+  const double noisy = step_rad * std::sqrt(1.0 / 12.0 + 0.6 * 0.6);
+  EXPECT_NEAR(guessed_rad(0.6, 2), noisy, 0.15 * noisy);
 }
 
 // The turning points of a swing alternate in sign: their differences contain no noise.

@@ -289,7 +289,7 @@ std::string light_text(const GltfModel& model, const std::string& file, const Sc
 // A mistake in the text, without the name of its file, which is not written.
 InputError without_file(const InputError& mistake, const fs::path& experiment) {
   std::string text = mistake.what();
-  if (text.starts_with(experiment.string())) {
+  if (text.starts_with(experiment.string() + ":")) {
     text.erase(0, text.find(": ", experiment.string().size()));
   } else if (mistake.names_file()) {
     return mistake;

@@ -14,6 +14,7 @@ namespace {
 // Sampled motion of one run: some states from the readings, and the scale of the acceleration.
 struct ReadMotion {
   std::vector<PlatformState> states;
+  std::vector<double> turned_rad = {};  // angle about the only axis in each state, with whole turns
   double acceleration_rad_s2 = 0.0;
   double acceleration_m_s2 = 0.0;  // for a sliding body
 };
@@ -74,8 +75,10 @@ ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
   const bool hides_angle = model.platform.turns_about_one_axis() && !seen.has_some_attitude();
   const AxisReadings swing =
       hides_angle ? angles_of_swing(seen, model.platform.axis) : AxisReadings();
+  const std::vector<double> angles_rad = seen.angles_rad(model.platform.axis, 0, seen.blocks());
   size_t at_swing = 0;
   for (size_t i = 0; i < seen.blocks(); i += stride) {
+    double turned_rad = std::isnan(angles_rad[i]) ? 0.0 : angles_rad[i];
     PlatformState state = Dynamics(model).initial_state(rate_at(seen, i, reach));
     state.time_s = seen.time_s[i];
     if (seen.has_some_attitude() && seen.attitude_rows[i] > 0.0) {
@@ -83,7 +86,8 @@ ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
     }
     while (at_swing < swing.row.size() && swing.row[at_swing] < i) ++at_swing;
     if (at_swing < swing.row.size()) {
-      state.lab_from_body = Eigen::AngleAxisd(swing.value[at_swing], model.platform.axis);
+      turned_rad = swing.value[at_swing];
+      state.lab_from_body = Eigen::AngleAxisd(turned_rad, model.platform.axis);
     }
     if (translation >= 0) {
       const std::array<double, 4> place = place_at(seen, i, reach);
@@ -95,6 +99,7 @@ ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
     least = least.cwiseMin(state.rate_body_rad_s);
     most = most.cwiseMax(state.rate_body_rad_s);
     motion.states.push_back(std::move(state));
+    motion.turned_rad.push_back(turned_rad);
   }
   motion.acceleration_rad_s2 = (most - least).norm() / seen.duration_s();
   if (translation >= 0) motion.acceleration_m_s2 = (fastest - slowest).norm() / seen.duration_s();
@@ -115,8 +120,10 @@ double mean_square_action(const Disturbance& disturbance, const AttitudeModel& n
   double sum = 0.0, count = 0.0;
   for (size_t run = 0; run < runs.size(); ++run) {
     model.schedule = runs[run].schedule;
-    for (const PlatformState& state : motions[run].states) {
-      PlatformState own = Dynamics(model).initial_state(state.rate_body_rad_s);
+    for (size_t i = 0; i < motions[run].states.size(); ++i) {
+      const PlatformState& state = motions[run].states[i];
+      PlatformState own =
+          Dynamics(model).initial_state(state.rate_body_rad_s, motions[run].turned_rad[i]);
       own.time_s = state.time_s;
       own.lab_from_body = state.lab_from_body;
       // Position and velocity are the last four states.
