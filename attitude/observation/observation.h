@@ -74,8 +74,8 @@ struct Observation {
   double initial_charge_C = 0.0;  // drawn before the first row
   bool has_gyro = false;
   bool is_piece = false;  // a segment of a recording that was cut for the search
-  // Of a platform with one axis: it, and the angle about it at the first attitude. Whole turns are
-  // counted so that the middle angle of the recording is within half a turn of zero.
+  // The axis of a platform with one axis, and the angle about it at the first attitude. Whole turns
+  // are counted so that the middle angle of the recording is within half a turn of zero.
   Vec3 only_axis = Vec3::Zero();
   std::optional<double> first_angle_rad = {};
   // Lab axes about which the attitude was measured; none: there is no attitude.
