@@ -122,7 +122,7 @@ void add_air(std::vector<PaperFigure>& all, const PaperInputs& in) {
       {"cylinder_drag_at_1_rpm_N_m", "II.B.2", 2.80e-11, torque_N_m(parts.rails),
        torque_N_m(cylinders_from_axis(parts.rails)),
        "eq. 22 is for a cylinder that points away from the axis; upright at their distance "
-       "the rails feel more, and even from the axis outwards (ours_as_published) their "
+       "the drag of the rails is larger, and even from the axis outwards (ours_as_published) their "
        "length gives more than printed"});
   all.push_back(
       {"cfd_drag_at_1_rpm_N_m", "II.B.2", 2.63e-4, torque_N_m(everything), nan,
@@ -131,9 +131,10 @@ void add_air(std::vector<PaperFigure>& all, const PaperInputs& in) {
                   (room.density_kg_m3 * one_rpm_rad_s * one_rpm_rad_s)) +
            " m^5, the scene has " +
            number(2.0 * air_coefficients(everything, room).form_N_m_s2 / room.density_kg_m3) +
-           "; ours reaches it at " + number(rate_for_torque_rpm(everything, 2.63e-4)) + " rpm"});
+           "; photorque gives this torque at " + number(rate_for_torque_rpm(everything, 2.63e-4)) +
+           " rpm"});
   all.push_back({"cfd_friction_at_1_rpm_N_m", "II.B.2", 2.73e-5, torque_N_m(parts.plates), nan,
-                 "as the lumped drag; ours reaches it at " +
+                 "as the lumped drag; photorque gives this torque at " +
                      number(rate_for_torque_rpm(parts.plates, 2.73e-5)) + " rpm"});
 }
 

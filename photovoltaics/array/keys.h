@@ -162,8 +162,8 @@ inline constexpr TableKey cover("cover", "cover glass, if the material of the ce
 inline constexpr TableKey back("back", "light on the back of bifacial cells");
 inline constexpr TextKey back_receiver(
     "receiver",
-    "irradiance map of the same node and grid with `side = \"back\"`; its light counts as "
-    "perpendicular");
+    "irradiance map of the same node and grid with `side = \"back\"`; its light is treated "
+    "as perpendicular to the cells");
 inline constexpr NumberKey bifaciality(
     "bifaciality", 0.7, Range::fraction(),
     "short-circuit current by the light of the back over that by equal light of the front "

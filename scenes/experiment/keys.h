@@ -153,7 +153,7 @@ inline constexpr TableKey torque_map(
 namespace camera_key {
 inline constexpr Vec3Key position(
     "position_m", "position of the camera, lab axes, different from `target_m`",
-    {.usually = "south-east of the scene, where `render` also sees the lamps"});
+    {.usually = "south-east of the scene, at a distance at which the lamps are visible"});
 inline constexpr Vec3Key target("target_m", {0.0, 0.0, 0.0}, "point in the middle of the picture");
 inline constexpr NumberKey field_of_view("field_of_view_deg",
                                          {1e-3 * degree_rad, 179.0 * degree_rad},

@@ -194,7 +194,7 @@ TEST(Gather, FeaturesThatNeedRaysAreRejected) {
   EXPECT_THROW(gather_direct(traceable, {}, std::span(&beam, 1), map, {}), InputError);
 }
 
-// A map of 10,000 bins and 8.4 million rays: docs/benchmarks.md, "Scaling".
+// A map of 10,000 bins and 8.4 million rays: docs/benchmarks.md.
 TEST(GatheringPays, ForHundredsOfLampsButNotForThousands) {
   constexpr size_t bins = 10000;
   constexpr uint64_t rays = 1ull << 23;

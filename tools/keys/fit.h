@@ -52,7 +52,7 @@ inline constexpr NumberKey voltage_noise(
     "standard deviation of the voltages of a curve, as a fraction of each reading");
 inline constexpr NumberKey correlation_points(
     "correlation_points", 0.0, Range::not_negative(),
-    "readings over which the noise of the current falls off (slow drift of the light)");
+    "correlation length of the noise of the current, in readings (slow drift of the light)");
 inline constexpr IntegerKey substrings("substrings", 0, 0, 100,
                                        "number of groups of cells under different light in one "
                                        "curve of a partly shaded string; 0: all "

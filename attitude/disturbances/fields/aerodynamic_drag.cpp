@@ -4,8 +4,9 @@
 //
 // table: of torque-map over the sphere for a gas flow ([torque_map.molecular_flow]), per pascal of
 // dynamic pressure. Speed ratio, accommodation and temperatures are those of the table.
-// density_kg_m3; or density_file, a CSV with t_s and density_kg_m3 (ends held); without both, a
-// mean atmosphere by the altitude (attitude/environment/thermosphere.h). scale: default 1.
+// density_kg_m3; or density_file, a CSV with t_s and density_kg_m3 (constant before its first and
+// after its last row); without both, a mean atmosphere by the altitude
+// (attitude/environment/thermosphere.h). scale: default 1.
 //
 // The orbit itself does not change.
 #include <functional>
@@ -28,8 +29,9 @@ namespace key {
 constexpr TextKey table("table",
                         "CSV of `torque-map` over the sphere (`elevation_deg`, `azimuth_deg`; "
                         "`torque_x_N_m`, …) for `[torque_map.molecular_flow]`");
-constexpr TextKey density_file("density_file", "CSV: `t_s`, `density_kg_m3`, ends held",
-                               {.usually = "a mean atmosphere by the altitude above WGS 84"});
+constexpr TextKey density_file(
+    "density_file", "CSV: `t_s`, `density_kg_m3`, constant before its first and after its last row",
+    {.usually = "a mean atmosphere by the altitude above WGS 84"});
 }  // namespace key
 
 struct StatedDensity {

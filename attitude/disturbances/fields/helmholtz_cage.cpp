@@ -25,9 +25,11 @@ constexpr ScalarKey gain_error(
 namespace key {
 constexpr Vec3Key field_lab("field_lab_T", {0.0, 0.0, 0.0},
                             "field set by the coils, lab axes; *or*");
-constexpr TextKey field_file("field_file",
-                             "a CSV: `t_s`, `field_x_T`, `field_y_T`, `field_z_T`, ends held; *or*",
-                             {.optional = true});
+constexpr TextKey field_file(
+    "field_file",
+    "a CSV: `t_s`, `field_x_T`, `field_y_T`, `field_z_T`, constant before its "
+    "first and after its last row; *or*",
+    {.optional = true});
 constexpr NumberKey altitude("altitude_m", Range::not_negative(),
                              "altitude of the orbit above a radius of 6371.2 km");
 constexpr NumberKey inclination("inclination_deg", {}, "inclination of the orbit");

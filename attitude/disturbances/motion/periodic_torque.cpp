@@ -42,11 +42,11 @@ DisturbanceKind kind() {
       .name = "periodic_torque",
       .summary = "a sinusoidal torque in body axes, as of a machine on board",
       .read = read,
-      .screening = {.parametrisations =
-                        {{"a vibration on board drives the platform at one frequency",
-                          {EffectKey::vector(amplitude.name, 5e-5),
-                           EffectKey::shape(frequency.name, 1.0, 5.0, 0.0, 100.0),
-                           EffectKey::shape(phase.name, 0.0, phase_scale, -EffectKey::unbounded)}}},
+      .screening = {.parametrisations = {{"a machine on board causes a torque at one frequency",
+                                          {EffectKey::vector(amplitude.name, 5e-5),
+                                           EffectKey::shape(frequency.name, 1.0, 5.0, 0.0, 100.0),
+                                           EffectKey::shape(phase.name, 0.0, phase_scale,
+                                                            -EffectKey::unbounded)}}},
                     .scan = Scan::frequency,
                     .fast = true},
       .keys = {amplitude, frequency, phase, key::phase}};

@@ -51,7 +51,7 @@ function build(run) {
   if (moving.length > 0) main.append(alongTheSlider(run.stage, moving));
   const pair = element('div', { class: 'pair' });
   if (mapSection) pair.append(section('Maps', mapSection.body));
-  if (run.power.length > 1) pair.append(section('Where the power went', waterfall(run.power)));
+  if (run.power.length > 1) pair.append(section('Power losses', waterfall(run.power)));
   main.append(pair);
   if (others.length > 0) main.append(section('Curves', bodies(others)));
   if (run.figures.length > 0) main.append(section('Figures', ...figureTable(run.figures, run.figures_file)));
@@ -60,7 +60,7 @@ function build(run) {
     main.append(section('Notes', element('ul', {}, run.notes.map((note) => element('li', {}, note)))));
   }
   // The text of a report continues below the scene; the provenance follows it.
-  main.closest('main').append(element('footer', {}, section('What made this page', provenance(run.provenance, run.command))));
+  main.closest('main').append(element('footer', {}, section('Provenance', provenance(run.provenance, run.command))));
 }
 
 build(read(document));

@@ -53,7 +53,7 @@ export class StageSection {
       this.view = null;
       this.canvas.remove();
       this.frame.append(element('p', { class: 'missing' },
-        `No picture in three dimensions: this browser gives no WebGL (${error.message}).`));
+        `The 3D scene is not shown: the browser does not support WebGL (${error.message}).`));
     }
     this.player = new Player(this.stage.axes, (from, to, fraction, at) => this.show(from, to, fraction, at));
     this.body = element('div', { class: 'stage-section' },

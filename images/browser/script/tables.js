@@ -39,7 +39,7 @@ export function table(json) {
         : element('td', { class: 'number', title: cell === null ? null : String(cell) }, readable(cell, 5));
     })));
   }
-  const count = shown < json.rows ? `the first ${shown} of ${json.rows} rows; all stand in ${json.name}.csv` : `${json.rows} rows`;
+  const count = shown < json.rows ? `the first ${shown} of ${json.rows} rows; ${json.name}.csv contains all rows` : `${json.rows} rows`;
   return element('details', {}, element('summary', {}, json.title || json.name, element('small', {}, ` ${count}`)),
     element('div', { class: 'scroll' }, element('table', {},
       element('thead', {}, element('tr', {}, json.columns.map((column) => element('th', {}, column.name)))),
