@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/text/format.h"
-#include "inference/decide.h"
 
 namespace photorque {
 
@@ -27,18 +26,6 @@ double explained_fraction(double chi2_per_sample_before, double chi2_per_sample_
   if (std::isinf(before)) return 1.0;
   const double noise = 5.0 * std::sqrt(2.0 / static_cast<double>(std::max<int64_t>(1, samples)));
   return before > noise ? std::clamp((before - after) / before, 0.0, 1.0) : 1.0;
-}
-
-Verdict verdict_of(inference::Finding finding) {
-  switch (finding) {
-    case inference::Finding::nothing_missing:
-      return Verdict::consistent;
-    case inference::Finding::named:
-      return Verdict::missing_physics;
-    case inference::Finding::unknown:
-      return Verdict::unexplained;
-  }
-  return Verdict::unexplained;
 }
 
 std::string untested_names(const Holdout& holdout) {

@@ -11,22 +11,14 @@
 #include <vector>
 
 #include "core/transform.h"
+#include "inference/decide.h"
 #include "inference/estimator/evidence.h"
 
 namespace photorque {
 
-namespace inference {
-enum class Finding;
-}
-
-enum class Verdict {
-  consistent,       // differences are noise, or within the stated uncertainty
-  missing_physics,  // the named effects explain all differences
-  unexplained,      // residual structure remains after the best known physics
-};
+using inference::Verdict;
 // Name as in diagnosis.json.
 std::string name_of(Verdict verdict);
-Verdict verdict_of(inference::Finding finding);
 
 // One key of an experiment file with fitted numbers, in the unit in its name.
 struct FittedParameter {

@@ -289,7 +289,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   const bool structure_left = checks.excess_sigma(named) > limits.max_excess_sigma;
   const bool predicts = judge.predicts(named);
   if (only_empirical || structure_left || !predicts) {
-    d.finding = Finding::unknown;
+    d.verdict = Verdict::unexplained;
     d.because = only_empirical   ? "a smooth law without physics explains the recording better"
                 : structure_left ? "the best known physics leaves structure in the recording"
                                  : "the best known physics does not predict the held-out data";
@@ -348,7 +348,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     d.chosen = judge.part_of(named, [&](size_t c) { return acts(c) >= limits.min_probability; });
     if (d.chosen == 0 || !judge.predicts(d.chosen) ||
         checks.excess_sigma(d.chosen) > limits.max_excess_sigma) {
-      d.finding = Finding::unknown;
+      d.verdict = Verdict::unexplained;
       d.because = "several explanations are about as likely";
       d.chosen = named;
       d.confidence = 1.0 - d.confidence;
@@ -360,7 +360,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     gains.clear();
     d.confidence = probability_of_all(d.chosen);
   }
-  d.finding = Finding::named;
+  d.verdict = Verdict::missing_physics;
   // Gate (e).
   d.held_out_tests_names = judge.lowers_held_out(d.chosen, checks.limits.max_untested_fraction);
   for (size_t which = 0; which < trials[d.chosen].candidates.size(); ++which) {

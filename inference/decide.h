@@ -17,10 +17,10 @@
 
 namespace photorque::inference {
 
-enum class Finding {
-  nothing_missing,  // differences are noise
-  named,            // the named candidates explain the differences
-  unknown,          // residual structure remains, or only an empirical candidate explains it
+enum class Verdict {
+  consistent,       // differences are noise, or within the stated uncertainty
+  missing_physics,  // the named candidates explain the differences
+  unexplained,      // residual structure remains, or only an empirical candidate explains it
 };
 
 // Limits of the gates in addition to Thresholds::Decision.
@@ -56,9 +56,9 @@ struct Name {
 };
 
 struct Decision {
-  Finding finding = Finding::nothing_missing;
-  double confidence = 0.0;  // posterior probability of the finding and the names
-  // The finding is "nothing missing" although the data differ from the nominal model. Fitted and
+  Verdict verdict = Verdict::consistent;
+  double confidence = 0.0;  // posterior probability of the verdict and the names
+  // The verdict is "consistent" although the data differ from the nominal model. Fitted and
   // held-out runs show the difference only together, and no candidate is much more likely than the
   // others.
   bool undecided = false;
@@ -66,14 +66,15 @@ struct Decision {
   bool leaves_more = false;
   size_t chosen = 0;      // index of the trial whose model is reported
   size_t best_named = 0;  // index of the best trial without empirical candidates; 0: nominal
-  // Reason for the finding "unknown", as text: "the model does not predict the held-out recording".
+  // Reason for the verdict "unexplained", as text: "the model does not predict the held-out
+  // recording".
   std::string because = {};
-  // Candidates of the chosen trial that are certain although the finding is unknown. With an
+  // Candidates of the chosen trial that are certain although the verdict is unexplained. With an
   // empirical law: at most one, without which all other explanations are far less likely. With
   // several about equally likely explanations: the candidates that they have in common.
   std::vector<size_t> beside_law = {};
   std::vector<double> probability;  // one per trial
-  std::vector<Name> names = {};     // names of the chosen trial if the finding is `named`
+  std::vector<Name> names = {};     // names of the chosen trial if the verdict is `missing_physics`
   // Whether the held-out data distinguish the chosen trial from the nominal model.
   bool held_out_tests_names = true;
 };
@@ -85,7 +86,7 @@ bool is_significant(const std::vector<double>& significance, const Thresholds::D
 bool is_significant(const Explanation& trial, const Thresholds::Decision& limits);
 
 // Decides between the trials of a domain. Trial 0 is the nominal model. `all` are the candidates.
-// `excess_sigma` is called for the best named trial. The finding "nothing missing" requires that
+// `excess_sigma` is called for the best named trial. The verdict "consistent" requires that
 // the nominal model also predicts the held-out data.
 Decision decide(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
                 const Checks& checks, const Thresholds::Decision& limits);

@@ -53,7 +53,7 @@ namespace {
 
 // Keeps the simplest (simpler_by()) of the names that are indistinguishable from the chosen ones.
 void prefer_simpler(const Thresholds& limits, Answer& a) {
-  if (a.decision.finding != inference::Finding::named) return;
+  if (a.decision.verdict != Verdict::missing_physics) return;
   const double alike = a.chosen().log_evidence - limits.search.min_log_evidence_gain;
   for (size_t i = 0; i < a.trials.size(); ++i) {
     const Trial& t = a.trials[i];
@@ -145,8 +145,8 @@ Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
   report_step(options, "fitting every effect of the catalogue");
   Answer a = searched(nominal, nominal_fit, data, options, Among::all, near);
   const size_t known = a.decision.best_named;
-  const bool is_known = a.decision.finding == inference::Finding::named ||
-                        (a.decision.finding == inference::Finding::unknown && known != 0 &&
+  const bool is_known = a.decision.verdict == Verdict::missing_physics ||
+                        (a.decision.verdict == Verdict::unexplained && known != 0 &&
                          a.trials[known].fit.chi2 < most_left * nominal_fit.chi2);
   if (!data.noise_is_open && !is_known) return a;
   const Trial explained = is_known ? a.trials[known] : a.chosen();
@@ -167,7 +167,7 @@ bool law_is_far_better(const Answer& a, const Thresholds& limits) {
 // Describes the unexplained residual by a refined law in time. Effects named in addition to this
 // law are dropped if they are not significant in the refined fit.
 void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& a) {
-  if (a.decision.finding != inference::Finding::unknown) return;
+  if (a.decision.verdict != Verdict::unexplained) return;
   Trial& chosen = a.trials[a.decision.chosen];
   chosen = refined_in_time(chosen, a.all, data.train);
   keep_predictive_explanation(data, options.limits, a);
@@ -185,7 +185,7 @@ bool has_law(const Trial& trial, const Candidates& all) {
 }
 
 void leave_unexplained(inference::Decision& decision) {
-  decision.finding = inference::Finding::unknown;
+  decision.verdict = Verdict::unexplained;
   decision.because = "the residual is far above the noise of the readings";
 }
 
@@ -218,8 +218,8 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
   if (!is_far) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, nullptr);
     // For rotation about one axis, known laws are named in addition to an empirical law.
-    const bool may_name = fine.decision.leaves_more ||
-                          (turns_alone && fine.decision.finding == inference::Finding::unknown);
+    const bool may_name =
+        fine.decision.leaves_more || (turns_alone && fine.decision.verdict == Verdict::unexplained);
     if (!may_name || (!turns_alone && law_is_far_better(fine, limits)) || !is_simple(nominal)) {
       describe(data, options, fine);
       return fine;
@@ -235,7 +235,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
   }
   if (is_far && laws && is_consistent_with_noise(laws->fit, data)) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, &*laws);
-    if (fine.decision.finding != inference::Finding::unknown) return fine;
+    if (fine.decision.verdict != Verdict::unexplained) return fine;
   }
   // 3. Search in which the residual counts as noise. If its names alone agree with the readings,
   // the search with the noise of the readings starts from them.
@@ -244,7 +244,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
       identify_with_discrepancy(nominal, rough, options, laws ? &*laws : nullptr);
   if (named && fine.trials.empty() && is_consistent_with_noise(named->chosen().fit, data)) {
     Answer again = at_noise_of_readings(nominal, data, options, nominal_fit, &named->chosen());
-    if (again.decision.finding != inference::Finding::unknown) return again;
+    if (again.decision.verdict != Verdict::unexplained) return again;
   }
   if (named) {
     if (!fine.trials.empty() && has_law(fine.chosen(), fine.all)) {

@@ -41,7 +41,7 @@ void report_explanation(const Answer& answer, const Fit& nominal_fit, const Reco
   const std::vector<Trial>& trials = answer.trials;
   const inference::Decision& decision = answer.decision;
   const Trial& chosen = answer.chosen();
-  d.verdict = verdict_of(decision.finding);
+  d.verdict = decision.verdict;
   d.confidence = decision.confidence;
   d.where = locate_differences(nominal_fit, data, all.limits.location);
   if (d.verdict == Verdict::missing_physics || answer.beside) {

@@ -347,11 +347,11 @@ Answer sets_of_needed_laws(const Fit& nominal_fit, const Trial& laws, const Reco
   return sets_of_laws(nominal_fit, contest.needed_of(*best), data, options, all);
 }
 
-// Sets the finding and its probability, corrected for as many tests as there are candidates.
+// Sets the verdict and its probability, corrected for as many tests as there are candidates.
 void decide_with_discrepancy(Answer& a) {
   a.rest_is_noise = true;
   a.depends_on.clear();  // computed for laws, which the names replace
-  a.decision.finding = inference::Finding::unknown;
+  a.decision.verdict = Verdict::unexplained;
   a.decision.beside_law.clear();
   const double least = *std::ranges::min_element(a.beside->sigma);
   const double by_chance = 0.5 * std::erfc(least / std::sqrt(2.0));

@@ -271,12 +271,15 @@ Diagnosis diagnose_light(const LightLab& lab, const NominalLight& nominal,
                          const LightDiagnoseOptions& options) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
   const std::string first = recordings.front().name;
+  Diagnosis d;
+  for (const auto* files : {&recordings, &holdouts}) {
+    for (std::string& note : reversal_notes(*files)) d.warnings.push_back(std::move(note));
+  }
   LightData data = read_light_data(lab, nominal, std::move(recordings), std::move(holdouts));
   require_enough(data, first);
   const LightAnswer answer = explain_light(lab, nominal, data, options);
-  Diagnosis d;
   d.effect_table = "effect";
-  d.verdict = verdict_of(answer.decision.finding);
+  d.verdict = answer.decision.verdict;
   d.confidence = answer.decision.confidence;
   d.because = answer.decision.because;
   d.where.channels = misfits(answer, data.train);

@@ -219,7 +219,7 @@ struct Thresholds {
     // Minimum probability of reported names or of effects indistinguishable from them.
     double min_probability = 0.7;
     // Residual structure [sigma] above which the best physics is insufficient; minimum confidence
-    // of the finding "unknown" in that case.
+    // of the verdict "unexplained" in that case.
     double max_excess_sigma = 6.0, structure_confidence = 0.95;
   } decision;
 

@@ -242,6 +242,25 @@ TEST(ModuleDiagnosis, NamesNoCrackWhereManyCellsLeak) {
   for (const FoundEffect& effect : d.effects) EXPECT_EQ(effect.kind, "cell_shunted");
 }
 
+// A reference whose currents are counted into the module, beside a recording that is not.
+TEST(ModuleDiagnosis, NotesAReferenceOfTheOtherSign) {
+  std::string reference = "voltage_V,current_A\n";
+  const LightRecording curve = measured(Network(0).curve(), 1);
+  for (size_t i = 0; i < curve.rows(); ++i) {
+    reference +=
+        std::to_string(curve.voltage_V[i]) + ',' + std::to_string(-curve.current_A[i]) + '\n';
+  }
+  const fs::path file = new_file(reference, ".csv");
+  const Settings root(std::make_shared<const SettingsNode>(
+      parse_toml("module = { cells_in_series = 12, reference_curve = \"" + file.string() + "\" }",
+                 "experiment.toml")));
+  const Diagnosis d = diagnose_module(read_module(root, {}), {measured(Network(0).curve(), 2)}, {});
+  EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
+  EXPECT_THAT(d.warnings,
+              testing::Contains(file.filename().string() +
+                                ": currents are negative in light; counted the other way round"));
+}
+
 TEST(ModuleDiagnosis, NamesNothingInOtherLight) {
   Network network(0);
   for (double& light : network.light_A) light *= 0.8;

@@ -35,7 +35,7 @@ std::vector<Explanation> nested(double first, double both) {
 
 TEST(Decide, NamesPredictiveEffects) {
   const Decision d = decided({explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0)});
-  EXPECT_EQ(d.finding, Finding::named);
+  EXPECT_EQ(d.verdict, Verdict::missing_physics);
   EXPECT_EQ(d.chosen, 1u);
   EXPECT_TRUE(d.because.empty());
 }
@@ -44,23 +44,23 @@ TEST(Decide, AnEffectWithoutPredictiveGainIsNotReported) {
   Thresholds::Decision mutant;
   mutant.max_predictive_sigma = 1e9;
   const std::vector<Explanation> named = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 9.0)};
-  EXPECT_EQ(decided(named).finding, Finding::unknown);
+  EXPECT_EQ(decided(named).verdict, Verdict::unexplained);
   EXPECT_FALSE(decided(named).because.empty());
-  EXPECT_EQ(decided(named, mutant).finding, Finding::named);
+  EXPECT_EQ(decided(named, mutant).verdict, Verdict::missing_physics);
   // "Nothing is missing" has to predict as well.
   const std::vector<Explanation> nothing = {explanation({}, 0.0, 9.0)};
-  EXPECT_EQ(decided(nothing).finding, Finding::unknown);
-  EXPECT_EQ(decided(nothing, mutant).finding, Finding::nothing_missing);
+  EXPECT_EQ(decided(nothing).verdict, Verdict::unexplained);
+  EXPECT_EQ(decided(nothing, mutant).verdict, Verdict::consistent);
 }
 
 // More evidence than any other, and never compared with the held-out data, where the others were.
 TEST(Decide, AnEffectWithoutPredictionIsNotReported) {
   std::vector<Explanation> trials = nested(100.0, 200.0);
   trials[2].predictive.reset();
-  EXPECT_EQ(decided(trials).finding, Finding::unknown);
+  EXPECT_EQ(decided(trials).verdict, Verdict::unexplained);
   // Without a recording to predict nothing was asked of anybody.
   for (Explanation& t : trials) t.predictive.reset();
-  EXPECT_EQ(decided(trials).finding, Finding::named);
+  EXPECT_EQ(decided(trials).verdict, Verdict::missing_physics);
   EXPECT_EQ(decided(trials).chosen, 2u);
 }
 
@@ -114,17 +114,17 @@ TEST(Decide, AnUnlikelyNameIsNotReported) {
                                            explanation({1}, 104.4, 1.0)};
   Thresholds::Decision limits;
   const Decision d = decided(trials, limits, all);
-  EXPECT_EQ(d.finding, Finding::unknown);
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_NEAR(d.confidence, 1.0 / (1.0 + std::exp(-4.4)), 1e-3);
   limits.min_probability = 0.0;
-  EXPECT_EQ(decided(trials, limits, all).finding, Finding::named);
+  EXPECT_EQ(decided(trials, limits, all).verdict, Verdict::missing_physics);
 }
 
 // Two that explain as much are one answer: the first with the second in its place.
 TEST(Decide, AnIndistinguishableNameIsReportedToo) {
   const Decision d = decided(
       {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0), explanation({1}, 99.9, 1.0)});
-  EXPECT_EQ(d.finding, Finding::named);
+  EXPECT_EQ(d.verdict, Verdict::missing_physics);
   EXPECT_NEAR(d.confidence, 1.0 / (1.0 + std::exp(-0.1)), 1e-6);
 }
 
@@ -132,10 +132,10 @@ TEST(Decide, AnIndistinguishableNameIsReportedToo) {
 TEST(Decide, ANameWithinItsErrorIsNotReported) {
   std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0)};
   trials[1].significance[0] = 3.9;
-  EXPECT_EQ(decided(trials).finding, Finding::nothing_missing);
+  EXPECT_EQ(decided(trials).verdict, Verdict::consistent);
   Thresholds::Decision mutant;
   mutant.min_significance = 3.0;
-  EXPECT_EQ(decided(trials, mutant).finding, Finding::named);
+  EXPECT_EQ(decided(trials, mutant).verdict, Verdict::missing_physics);
 }
 
 // Two names stand together; "second" is hardly missed, and alone "first" is within its error.
@@ -143,10 +143,10 @@ TEST(Gates, ANameWithinItsErrorWithoutAnotherIsNotReported) {
   std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0),
                                      explanation({0, 1}, 102.0, 1.0)};
   trials[1].joint_significance = {3.9};
-  EXPECT_EQ(decided(trials).finding, Finding::nothing_missing);
+  EXPECT_EQ(decided(trials).verdict, Verdict::consistent);
   Thresholds::Decision mutant;
   mutant.min_significance = 3.0;
-  EXPECT_EQ(decided(trials, mutant).finding, Finding::named);
+  EXPECT_EQ(decided(trials, mutant).verdict, Verdict::missing_physics);
   EXPECT_EQ(decided(trials, mutant).chosen, 1u);
 }
 
@@ -180,7 +180,7 @@ TEST(Decide, NoConfidenceIsMoreThanOne) {
   }
 }
 
-// A law without a name is the finding; beside it only effects that it needs are named.
+// A law without a name gives "unexplained"; beside it only effects that it needs are named.
 TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
   const std::vector<CandidateTraits> all = {
       {.name = "first"}, {.name = "second"}, {.name = "law", .is_empirical = true}};
@@ -194,7 +194,7 @@ TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
   };
   const Thresholds::Decision limits = Thresholds().decision;
   const Decision d = judged(0.0, limits);
-  EXPECT_EQ(d.finding, Finding::unknown);
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_EQ(d.chosen, 4u);
   EXPECT_EQ(d.beside_law, std::vector<size_t>{0});
   // The fit to the first recordings alone may predict the others worse than no law did.
@@ -226,10 +226,10 @@ TEST(Decide, IndistinguishableEffectsAreNotConsistent) {
     }
     return decided(trials, Thresholds().decision, all);
   };
-  EXPECT_EQ(judged(1.0).finding, Finding::nothing_missing);
+  EXPECT_EQ(judged(1.0).verdict, Verdict::consistent);
   EXPECT_TRUE(judged(1.0).undecided);
   const Decision d = judged(900.0);
-  EXPECT_EQ(d.finding, Finding::unknown);
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_FALSE(d.undecided);
   EXPECT_TRUE(d.beside_law.empty());
   EXPECT_NEAR(d.confidence, 1.0 / (1.0 + std::exp(0.3)), 1e-6);
@@ -257,10 +257,10 @@ TEST(Gates, ANameThatLeftOutSegmentsDoNotNeedIsNotReported) {
   EXPECT_EQ(judged(8.0, 3.1, limits).names[1].gain_sigma, 3.1);
   EXPECT_EQ(judged(8.0, 2.9, limits).chosen, 1u);
   EXPECT_EQ(judged(8.0, 2.9, mutant).chosen, 2u);
-  EXPECT_EQ(judged(2.9, 2.9, limits).finding, Finding::nothing_missing);
+  EXPECT_EQ(judged(2.9, 2.9, limits).verdict, Verdict::consistent);
   // Only "second" is needed, and no trial has it alone: no fit can be reported.
-  EXPECT_EQ(judged(2.9, 8.0, limits).finding, Finding::nothing_missing);
-  EXPECT_EQ(judged(2.9, 8.0, mutant).finding, Finding::named);
+  EXPECT_EQ(judged(2.9, 8.0, limits).verdict, Verdict::consistent);
+  EXPECT_EQ(judged(2.9, 8.0, mutant).verdict, Verdict::missing_physics);
 }
 
 // A fit to all recordings may explain data that the fit to some of them led away from.
@@ -269,10 +269,10 @@ TEST(Gates, AHeldOutChi2FarAboveItsPredictionIsUnknown) {
   Thresholds::Decision limits, mutant;
   mutant.max_predictive_sigma = 1e9;
   trials[1].held_out_sigma = 4.9;
-  EXPECT_EQ(decided(trials, limits).finding, Finding::named);
+  EXPECT_EQ(decided(trials, limits).verdict, Verdict::missing_physics);
   trials[1].held_out_sigma = 5.1;
-  EXPECT_EQ(decided(trials, limits).finding, Finding::unknown);
-  EXPECT_EQ(decided(trials, mutant).finding, Finding::named);
+  EXPECT_EQ(decided(trials, limits).verdict, Verdict::unexplained);
+  EXPECT_EQ(decided(trials, mutant).verdict, Verdict::missing_physics);
 }
 
 TEST(Gates, DataThatTheNominalModelPredictsTestNoName) {
@@ -286,7 +286,7 @@ TEST(Gates, DataThatTheNominalModelPredictsTestNoName) {
   };
   GateLimits mutant;
   mutant.max_untested_fraction = 1e9;
-  EXPECT_EQ(decided(trials).finding, Finding::named);
+  EXPECT_EQ(decided(trials).verdict, Verdict::missing_physics);
   EXPECT_FALSE(is_tested({}));
   EXPECT_TRUE(is_tested(mutant));
   trials[0].holdout_chi2_per_sample = 2.0;
@@ -314,7 +314,7 @@ TEST(Gates, PlacesThatExplainAsMuchAreListed) {
   };
   GateLimits limits, mutant;
   const Decision d = judged(limits);
-  EXPECT_EQ(d.finding, Finding::named);
+  EXPECT_EQ(d.verdict, Verdict::missing_physics);
   EXPECT_EQ(d.names.front().equal_places, std::vector<size_t>{1});
   // That it is one of these cells is sure, though none of them is.
   EXPECT_GT(d.names.front().probability, 0.99);

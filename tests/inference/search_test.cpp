@@ -82,7 +82,7 @@ double false_alarms(double min_significance, int seeds) {
   for (int seed = 0; seed < seeds; ++seed) {
     const Answered a =
         answer(terms, {recorded(static_cast<uint64_t>(seed), nothing())}, {}, limits);
-    alarms += a.decision.finding == Finding::named ? 1 : 0;
+    alarms += a.decision.verdict == Verdict::missing_physics ? 1 : 0;
   }
   return alarms / static_cast<double>(seeds);
 }
@@ -104,10 +104,10 @@ TEST(Search, FindsNothingInNoise) {
   for (uint64_t seed = 1; seed <= 100; ++seed) {
     const Recorded seen(nothing(), seed);
     const Answered a = answer(known_terms(), seen);
-    alarms += a.decision.finding == Finding::nothing_missing ? 0 : 1;
+    alarms += a.decision.verdict == Verdict::consistent ? 0 : 1;
     EXPECT_TRUE(a.names.empty());
     const Answered b = answer(known_terms(), seen, mutant);
-    alarms_of_mutant += b.decision.finding == Finding::nothing_missing ? 0 : 1;
+    alarms_of_mutant += b.decision.verdict == Verdict::consistent ? 0 : 1;
   }
   // A name needs 4.75 σ: six terms and fifty frequencies reach it once in 5000 recordings or so.
   EXPECT_EQ(alarms, 0);
@@ -121,7 +121,7 @@ TEST(Search, NamesTheTermsThatWereAdded) {
     const Eigen::VectorXd signal = of_degree(3, 12.0) + of_degree(6, -15.0);
     const Recorded seen(signal, seed);
     const Answered a = answer(known_terms(), seen);
-    EXPECT_EQ(a.decision.finding, Finding::named);
+    EXPECT_EQ(a.decision.verdict, Verdict::missing_physics);
     EXPECT_EQ(a.names, (Names{"degree 3", "degree 6"})) << seed;
     EXPECT_GT(a.decision.confidence, 0.9);
     EXPECT_NEAR(*a.trials[a.decision.chosen].holdout_chi2_per_sample, 1.0, 0.5);
@@ -193,10 +193,10 @@ TEST(Search, IsUnexplainedIfOnlyTheEmpiricalTermFits) {
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const Recorded seen(signal, seed);
     const Answered a = answer(known_terms(), seen);
-    EXPECT_EQ(a.decision.finding, Finding::unknown);
+    EXPECT_EQ(a.decision.verdict, Verdict::unexplained);
     EXPECT_EQ(a.names.count("smooth"), 1u);
     EXPECT_GT(a.decision.confidence, 0.9);
-    EXPECT_NE(answer(known_terms(), seen, mutant).decision.finding, Finding::unknown);
+    EXPECT_NE(answer(known_terms(), seen, mutant).decision.verdict, Verdict::unexplained);
   }
 }
 
@@ -206,10 +206,10 @@ TEST(Search, IsUnexplainedIfStructureRemains) {
   terms.pop_back();
   const Eigen::VectorXd signal = smooth(14).shape({grid(samples), {}, 1.0}, 0.0).col(4) * 40.0;
   const std::vector<Series> train = {recorded(1, signal)}, held = {recorded(2, signal)};
-  EXPECT_EQ(answer(terms, train, held).decision.finding, Finding::unknown);
+  EXPECT_EQ(answer(terms, train, held).decision.verdict, Verdict::unexplained);
   Thresholds mutant;
   mutant.decision.max_excess_sigma = mutant.decision.max_predictive_sigma = 1e9;
-  EXPECT_NE(answer(terms, train, held, mutant).decision.finding, Finding::unknown);
+  EXPECT_NE(answer(terms, train, held, mutant).decision.verdict, Verdict::unexplained);
 }
 
 Eigen::VectorXd of_swing(double periods, double sigmas) {

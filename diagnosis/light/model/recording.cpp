@@ -424,6 +424,16 @@ bool is_light_recording(const std::filesystem::path& path, const RecordingOption
   return light_kind_of(path, options).has_value();
 }
 
+std::vector<std::string> reversal_notes(const std::vector<LightRecording>& recordings) {
+  std::vector<std::string> notes;
+  for (const LightRecording& recording : recordings) {
+    if (!recording.is_reversed) continue;
+    notes.push_back(std::filesystem::path(recording.name).filename().string() +
+                    ": currents are negative in light; counted the other way round");
+  }
+  return notes;
+}
+
 LightRecording read_light_recording(const std::filesystem::path& path,
                                     const DefaultConditions& usual,
                                     const RecordingOptions& options) {

@@ -72,6 +72,9 @@ std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& p
 // Whether a file has such a header. False for unreadable files.
 bool is_light_recording(const std::filesystem::path& path, const RecordingOptions& options = {});
 
+// One line per file with reversed currents.
+std::vector<std::string> reversal_notes(const std::vector<LightRecording>& recordings);
+
 // Throws InputError with file and line without such a header or a usable row.
 LightRecording read_light_recording(const std::filesystem::path& path,
                                     const DefaultConditions& usual,

@@ -30,6 +30,7 @@ struct ModuleDesign {
   int chains = 1;  // parallel chains under each bypass diode
   std::vector<std::filesystem::path> reference_files;
   std::vector<LightRecording> references;  // one per curve
+  std::vector<std::string> notes;          // on the references, for the user
   // For each reference. If empty, all have reference_temperature_K, and their light is not
   // measured.
   std::vector<double> reference_temperatures_K, reference_irradiances_W_m2;

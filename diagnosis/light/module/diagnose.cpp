@@ -143,14 +143,10 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   const ModuleNominal nominal = nominal_module(design);
   ModuleData data;
   DataQuality quality;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = design.notes;
   const auto read = [&](const std::vector<LightRecording>& files, std::vector<ModuleRun>& runs) {
     for (const LightRecording& file : files) {
       require_curve(file);
-      if (file.is_reversed) {
-        warnings.push_back(std::filesystem::path(file.name).filename().string() +
-                           ": currents are negative in light; counted the other way round");
-      }
       for (const LightRecording& curve : sweeps_of(file)) {
         runs.push_back(run_of(curve, design, nominal, quality));
         data.whole.push_back(runs.back());
@@ -159,6 +155,9 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   };
   read(recordings, data.train);
   read(holdouts, data.held);
+  for (const auto* files : {&recordings, &holdouts}) {
+    for (std::string& note : reversal_notes(*files)) warnings.push_back(std::move(note));
+  }
   if (data.held.empty()) {
     for (ModuleRun& run : data.train) {
       auto [train, held] = split_curve(run);

@@ -431,7 +431,7 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
     return !(fit.data_chi2 <= std::min(static_cast<double>(fit.samples), most_chi2)) ||
            trial.prior_excess_sigma() > limits.decision.max_excess_sigma;
   };
-  const bool is_odd = answer.decision.finding != inference::Finding::nothing_missing;
+  const bool is_odd = answer.decision.verdict != Verdict::consistent;
   if (!is_odd && !leaves_more(answer.joint.front())) return answer;
   fit_effects(fitter, design, nominal, hypotheses, data.train, everything, threads, answer);
   size_t best = 0;  // best physical hypothesis

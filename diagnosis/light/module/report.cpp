@@ -246,7 +246,7 @@ Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
   const ModuleFitter fitter(design, nominal, limits);
   Diagnosis d;
   d.effect_table = "effect";
-  d.verdict = verdict_of(answer.decision.finding);
+  d.verdict = answer.decision.verdict;
   d.confidence = answer.decision.confidence;
   d.because = answer.decision.because;
   const size_t chosen = answer.decision.chosen;
