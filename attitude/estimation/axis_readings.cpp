@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/constants.h"
 #include "core/numerics/linear.h"
@@ -177,6 +178,33 @@ size_t start_of_motion(const Observation& rows, const Vec3& axis, size_t first, 
   if (rows.has_some_attitude()) limit_to(angles_about(rows, axis, first, last), false);
   if (rows.has_gyro) limit_to(rates_about(rows, axis, first, last), true);
   return sets_off == last ? first : sets_off;
+}
+
+std::optional<ReadingAtRest> reading_at_rest(const Observation& rows, const Vec3& axis) {
+  constexpr size_t part = 10, fewest = 10;
+  constexpr double moves = 10.0, without_slope = 4.0, most = 0.1;
+  const std::vector<double> rate = rates_about(rows, axis, 0, rows.blocks()).value;
+  const size_t count = std::max(fewest, rate.size() / part);
+  if (rate.size() < 2 * count) return std::nullopt;
+  const auto mean = [&](size_t first, size_t last) {
+    return std::accumulate(rate.begin() + static_cast<ptrdiff_t>(first),
+                           rate.begin() + static_cast<ptrdiff_t>(last), 0.0) /
+           static_cast<double>(last - first);
+  };
+  const size_t from = rate.size() - count, middle = rate.size() - count / 2;
+  const double at_rest = mean(from, rate.size());
+  double squares = 0.0, farthest = 0.0;
+  for (size_t i = 0; i < rate.size(); ++i) {
+    const double off = rate[i] - at_rest;
+    if (i < from) farthest = std::max(farthest, std::abs(off));
+    if (i >= from) squares += off * off;
+  }
+  const double scatter = std::sqrt(squares / static_cast<double>(count - 1)),
+               sigma = scatter / std::sqrt(static_cast<double>(count));
+  const bool is_at_rest =
+      farthest > moves * scatter && std::abs(at_rest) < most * farthest &&
+      std::abs(mean(from, middle) - mean(middle, rate.size())) <= without_slope * 2.0 * sigma;
+  return is_at_rest ? std::optional(ReadingAtRest{at_rest, sigma}) : std::nullopt;
 }
 
 }  // namespace photorque

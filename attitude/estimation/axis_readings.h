@@ -42,4 +42,12 @@ Eigen::Vector4d fitted_cubic(const AxisReadings& read, size_t first, size_t last
 // than ten times the scatter during the time of the rest.
 size_t start_of_motion(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 
+// Reading of a gyro after the body has come to rest, with its standard error. The last tenth of the
+// rates, at least ten readings, scatters about this value without a slope. The value is less than a
+// tenth of the largest rate, and some rate differs from it by more than ten times the scatter.
+struct ReadingAtRest {
+  double rate_rad_s = 0.0, sigma_rad_s = 0.0;
+};
+std::optional<ReadingAtRest> reading_at_rest(const Observation& rows, const Vec3& axis);
+
 }  // namespace photorque

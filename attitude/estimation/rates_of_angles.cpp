@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "attitude/estimation/axis_readings.h"
+#include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/numerics/median.h"
 
@@ -53,15 +54,17 @@ std::optional<Recording> with_rates_of_far_turns(const Recording& recording,
                                                  const Platform& platform) {
   constexpr double readings_per_turn = 9.0, fewest_turns = 10.0;
   if (!platform.turns_about_one_axis() || platform.slides()) return std::nullopt;
-  const Channel* angle = nullptr;
+  const auto is_angle = [](const Channel& channel) {
+    return std::ranges::any_of(std::array{"angle_rad", "roll_rad", "pitch_rad", "yaw_rad"},
+                               [&](const char* name) { return channel.name == name; });
+  };
+  const auto angle = std::ranges::find_if(recording.channels, is_angle);
+  if (angle == recording.channels.end()) return std::nullopt;
+  const std::vector<std::string> unused = MotionColumns(recording, platform, "").unused();
   for (const Channel& channel : recording.channels) {
-    const bool is_angle =
-        std::ranges::any_of(std::array{"angle_rad", "roll_rad", "pitch_rad", "yaw_rad"},
-                            [&](const char* name) { return channel.name == name; });
-    if (!is_angle || angle != nullptr) return std::nullopt;
-    angle = &channel;
+    const bool is_used = std::ranges::find(unused, channel.name) == unused.end();
+    if (is_used && &channel != &*angle) return std::nullopt;
   }
-  if (angle == nullptr) return std::nullopt;
   Recording result = recording;
   Channel rate{"rate_rad_s", {}};
   result.time_s.clear();

@@ -26,8 +26,10 @@ namespace {
 bool is_among(const Candidate& c, Among among) {
   if (among == Among::all) return true;
   const bool is_known = among == Among::unscanned || !c.empirical();
+  const bool acts = c.start.stage != Stage::measurement,
+             is_bias = !acts && c.effect.how.per_recording;
   return c.is_linear() && is_known &&
-         (among != Among::torques || c.start.stage != Stage::measurement);
+         (acts || among < Among::torques_and_bias || (is_bias && among == Among::torques_and_bias));
 }
 
 }  // namespace
@@ -70,7 +72,8 @@ void prefer_simpler(const Thresholds& limits, Answer& a) {
 Candidates candidates_among(Among among, const NominalModel& nominal,
                             const std::vector<Observation>& runs, const Thresholds& limits) {
   Candidates all = all_candidates(nominal, runs, limits);
-  for (const Among first : {Among::unscanned, Among::catalogue, Among::torques}) {
+  for (const Among first :
+       {Among::unscanned, Among::catalogue, Among::torques_and_bias, Among::torques}) {
     std::ranges::stable_partition(all.list, [&](const Candidate& c) { return is_among(c, first); });
   }
   // An uncertain inertia already has an error parameter; with a second one the scale of all torques
@@ -78,8 +81,7 @@ Candidates candidates_among(Among among, const NominalModel& nominal,
   const bool has_error = nominal.uncertain_inertia.has_value();
   std::erase_if(all.list, [&](const Candidate& c) {
     const bool is_second = has_error && c.effect.how.inertia_change_kg_m2 != nullptr;
-    return !is_among(c, among) ||
-           ((among == Among::torques || among == Among::catalogue) && is_second);
+    return !is_among(c, among) || (among >= Among::catalogue && is_second);
   });
   return all;
 }
@@ -119,7 +121,12 @@ double held_chi2_per_sample(const Trial& trial, const RecordedData& data,
 // or, if there is none, by the nominal model.
 void keep_predictive_explanation(const RecordedData& data, const Thresholds& limits, Answer& a) {
   if (data.held.empty()) return;
-  const double nominal = held_chi2_per_sample(a.trials.front(), data, limits);
+  // Allows for the scatter of χ² of as many readings.
+  constexpr double by_chance = 3.0;
+  const auto samples =
+      static_cast<double>(propagate_model(a.trials.front().fit, data.held, limits).samples);
+  const double nominal = held_chi2_per_sample(a.trials.front(), data, limits) *
+                         (1.0 + by_chance * std::sqrt(2.0 / samples));
   size_t kept = 0;
   if (held_chi2_per_sample(a.chosen(), data, limits) <= nominal) return;
   for (const size_t i : inference::by_evidence(a.trials)) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "attitude/estimation/fit.h"
+#include "attitude/estimation/swing.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
 #include "core/text/format.h"
@@ -165,6 +166,13 @@ class Contest {
     return with.held_chi2 < answer_.all.limits.decision.max_held_out_fraction * without.held_chi2;
   }
 
+  bool halves_segments(const Contender& without, const Contender& with) const {
+    const auto sum = [](const Contender& c) {
+      return std::accumulate(c.chi2.begin(), c.chi2.end(), 0.0);
+    };
+    return sum(with) < answer_.all.limits.decision.max_held_out_fraction * sum(without);
+  }
+
   // Motion about three axes is flexible enough to fit anything. There a further name must halve the
   // residuals of the held-out data.
   bool improves_enough(const Contender& without, const Contender& with) const {
@@ -174,8 +182,9 @@ class Contest {
   }
 
   // Improvement of the prediction of segments by a name [standard errors]; 0 if the name worsens
-  // the prediction of the held-out data. If the name halves the χ² of the held-out data, the
-  // improvement is multiplied by 1.8, so 1.67 standard errors count as three.
+  // the prediction of the held-out data. If the name halves the χ² of the held-out data or of all
+  // segments together, the improvement is multiplied by 1.8, so 1.67 standard errors count as
+  // three.
   double missed(const Contender& without, const Contender& with) const {
     constexpr double by_chance = 3.0, confirmed = 1.8;
     // A residual beyond the noise scatters in proportion to its size.
@@ -185,7 +194,7 @@ class Contest {
       return 0.0;
     }
     return inference::gain_sigma(without.chi2, with.chi2) *
-           (halves_held_out(without, with) ? confirmed : 1.0);
+           (halves_held_out(without, with) || halves_segments(without, with) ? confirmed : 1.0);
   }
 
   // Whether `one` predicts the segments not significantly worse than `other` does.
@@ -372,14 +381,22 @@ bool is_of_textbook(const Candidates& all) {
 }
 
 Among among_with_discrepancy(const NominalModel& nominal, const RecordedData& data) {
+  if (!nominal.model.platform.turns_about_one_axis()) return Among::torques;
   const Vec3& axis = nominal.model.platform.axis;
-  const bool sees_both = std::ranges::all_of(data.train, [&](const Observation& seen) {
+  const auto in_all_runs = [&](const auto& holds) {
+    return std::ranges::all_of(data.train, holds);
+  };
+  const auto sees_both = [&](const Observation& seen) {
     const bool has_rate = std::ranges::any_of(
         seen.gyro_rows, [&](const Vec3& rows) { return rows.dot(axis.cwiseAbs()) > 0.0; });
     return seen.has_some_attitude() && has_rate;
-  });
-  return nominal.model.platform.turns_about_one_axis() && sees_both ? Among::catalogue
-                                                                    : Among::torques;
+  };
+  const auto shows_bias = [&](const Observation& seen) {
+    return !angles_of_swing(seen, axis).row.empty();
+  };
+  return in_all_runs(sees_both)    ? Among::catalogue
+         : in_all_runs(shows_bias) ? Among::torques_and_bias
+                                   : Among::torques;
 }
 
 bool is_consistent_with_noise(const Fit& fit, const RecordedData& data) {

@@ -8,8 +8,9 @@
 namespace photorque {
 
 // Candidates to search, each a subset of the previous: all; those whose start requires no scan;
-// those of the catalogue; torques only, because large instrument errors can mimic any effect.
-enum class Among { all, unscanned, catalogue, torques };
+// those of the catalogue; torques and the bias of a gyro; torques only, because large instrument
+// errors can mimic any effect.
+enum class Among { all, unscanned, catalogue, torques_and_bias, torques };
 
 // The chosen candidates, those of narrower choices first, so that indices of a trial remain valid
 // among more candidates.
@@ -17,7 +18,8 @@ Candidates candidates_among(Among among, const NominalModel& nominal,
                             const std::vector<Observation>& runs, const Thresholds& limits);
 
 // Candidates of the search in which the residual counts as noise. If angle and rate about one axis
-// are both measured, each reveals errors of the other instrument independently of the torque.
+// are both measured, each reveals errors of the other instrument independently of the torque. Of
+// rates alone, the bias is revealed by a swing, whose mean rate is zero.
 Among among_with_discrepancy(const NominalModel& nominal, const RecordedData& data);
 
 // Whether the machine has textbook torques only: no commands, fields, wheels or light.

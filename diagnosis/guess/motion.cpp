@@ -76,12 +76,13 @@ struct Machine {
   }
 };
 
+SettingsNode vector_node(const Vec3& v) {
+  return {SettingsNode::Array{number_node(v.x()), number_node(v.y()), number_node(v.z())}};
+}
+
 SettingsNode matrix(const Mat3& m) {
   SettingsNode::Array rows;
-  for (int i = 0; i < 3; ++i) {
-    rows.push_back(
-        {SettingsNode::Array{number_node(m(i, 0)), number_node(m(i, 1)), number_node(m(i, 2))}});
-  }
+  for (int i = 0; i < 3; ++i) rows.push_back(vector_node(m.row(i)));
   return {std::move(rows)};
 }
 
@@ -185,6 +186,22 @@ void add_noise(TomlDocument& document, const std::vector<Observation>& runs,
   document.set(document.table("sensors"), key,
                number_node(std::sqrt(square / static_cast<double>(levels.size()))),
                "by which neighbouring readings scatter");
+}
+
+// A gyro that reads a rate at rest, after a motion about one axis of which only rates are known.
+void add_gyro_bias(TomlDocument& document, const Machine& m) {
+  constexpr double significant = 5.0;
+  for (const Observation& seen : m.runs) {
+    const auto rest = reading_at_rest(seen, m.platform.axis);
+    if (!rest || std::abs(rest->rate_rad_s) < significant * rest->sigma_rad_s) continue;
+    const Vec3 value = rest->rate_rad_s * m.platform.axis + Vec3::Zero(),  // no -0
+        sigma = rest->sigma_rad_s * m.platform.axis.cwiseAbs();
+    SettingsNode::Table& sensors = document.table("sensors");
+    document.set(sensors, "gyro.bias_rad_s.value", vector_node(value),
+                 "CONFIRM: what the gyro reads at rest, at the end");
+    document.set(sensors, "gyro.bias_rad_s.sigma", vector_node(sigma));
+    return;
+  }
 }
 
 // Reason for the restoring law of an oscillation, from the readings.
@@ -541,6 +558,9 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
   if (has_gyro) add_noise(document, m.runs, {3, 4, 5}, rate_noise, 1.0);
   if (has_angle && m.platform.turns_about_one_axis()) {
     add_noise(document, m.runs, {0, 1, 2}, angle_noise, arcsecond_rad);
+  }
+  if (has_gyro && !has_angle && m.platform.turns_about_one_axis() && !m.platform.slides()) {
+    add_gyro_bias(document, m);
   }
   std::vector<int> rates, angles;
   for (int channel = vector_channels; channel < channel_count; ++channel) {
