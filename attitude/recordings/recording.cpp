@@ -254,7 +254,11 @@ class RecordingReader {
     split_cells(line, separator_, cells_);
     while (cells_.size() > columns_.size() && trimmed(cells_.back()).empty()) cells_.pop_back();
     if (cells_.size() != columns_.size()) {
-      if (++report.malformed_rows == 1) {
+      ++report.malformed_rows;
+      // A row that ends behind its time has no reading, as of a frame in which Tracker has no mark.
+      if (cells_.size() == 1 && time_column_ == 0U && std::isfinite(time_of_row())) {
+        ++rows_of_times_;
+      } else if (!first_malformed_) {
         first_malformed_ = error(
             "", "a row of " + std::to_string(cells_.size()) + " cells",
             std::to_string(columns_.size()) + ", as in the header; numbers have a point, no comma");
@@ -306,7 +310,8 @@ class RecordingReader {
   // A few damaged rows are left out. If most rows are damaged, the file is not valid.
   void require_mostly_whole() const {
     const RecordingReport& report = recording_.report;
-    if (first_malformed_ && report.malformed_rows > report.rows_kept) throw *first_malformed_;
+    if (first_malformed_ && report.malformed_rows - rows_of_times_ > report.rows_kept)
+      throw *first_malformed_;
     if (first_without_time_ && report.rows_without_time > report.rows_kept) {
       throw *first_without_time_;
     }
@@ -379,6 +384,7 @@ class RecordingReader {
   char separator_ = ',';
   int64_t kept_cells_ = 0;
   std::optional<InputError> first_malformed_, first_without_time_;
+  int64_t rows_of_times_ = 0;
 };
 
 std::string cell_text(double value) {

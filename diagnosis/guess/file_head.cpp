@@ -19,6 +19,13 @@ std::string command_with_names(const std::filesystem::path& path, const std::str
          " --columns " + names + " (write what they are)";
 }
 
+bool rises(const FileHead& head, size_t column) {
+  for (size_t i = 1; i < head.rows.size(); ++i) {
+    if (!(head.rows[i][column] > head.rows[i - 1][column])) return false;
+  }
+  return !head.rows.empty();
+}
+
 // A clock with large integer steps does not count in seconds but in milliseconds or microseconds.
 std::string clock_unit(const FileHead& head, size_t column) {
   std::vector<double> steps;
@@ -35,8 +42,16 @@ std::string clock_unit(const FileHead& head, size_t column) {
 
 namespace {
 
-std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view>& cells,
-                                              char separator, size_t fewest_cells) {
+struct NumberedLine {
+  int64_t number;
+  std::string text;
+};
+
+// The numbers of a row of at least `fewest_cells`; nothing for another line.
+std::optional<std::vector<double>> numbers_in(const NumberedLine& line, char separator,
+                                              size_t fewest_cells) {
+  std::vector<std::string_view> cells;
+  split_cells(line.text, separator, cells);
   std::vector<double> numbers;
   bool any = false;
   for (const std::string_view cell : cells) {
@@ -49,12 +64,11 @@ std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view
   return numbers;
 }
 
-struct NumberedLine {
-  int64_t number;
-  std::string text;
-};
+bool is_comment(const NumberedLine& line) {
+  return line.text.front() == '#';
+}
 
-// The first lines of a file, without comment lines.
+// The first lines of a file that are not empty.
 std::vector<NumberedLine> first_lines(const std::filesystem::path& path,
                                       const std::vector<std::string>& header) {
   constexpr size_t most = 400;
@@ -63,55 +77,144 @@ std::vector<NumberedLine> first_lines(const std::filesystem::path& path,
   std::string_view line;
   while (first.size() < most && lines.next(line)) {
     if (first.empty()) require_text(line.substr(0, 16), {path.string(), 1});
-    if (trimmed(line).empty() || line.front() == '#') continue;
+    if (unquoted(line).empty()) continue;
     first.push_back({lines.number(), std::string(line)});
   }
   return first;
 }
 
 // The cells of a line of units: "s, m, m"; empty for another line.
-std::vector<std::string> units_in(const std::vector<std::string_view>& cells) {
-  std::vector<std::string> units;
+std::vector<std::string> units_in(const std::vector<std::string>& cells) {
   bool any = false;
-  for (const std::string_view cell : cells) {
-    units.push_back(header_cell_text(cell));
-    if (trimmed(units.back()).empty()) continue;
-    if (!unit_written(units.back())) return {};
+  for (const std::string& cell : cells) {
+    if (trimmed(cell).empty()) continue;
+    if (!unit_written(cell)) return {};
     any = true;
   }
-  return any ? units : std::vector<std::string>();
+  return any ? cells : std::vector<std::string>();
 }
 
-// The first table with this separator. It has no column names if the line above it has a different
-// number of cells.
+// The cells of a line between blanks, a unit with its name: "Time ( s )", "x / m", "I in A".
+std::vector<std::string> split_at_names(std::string_view line) {
+  std::vector<std::string> cells;
+  bool joins = false;
+  for (const std::string_view word : words_of(line)) {
+    const bool is_link = word == "/" || word == "in";
+    const auto brackets = [&](const char* kind) {
+      return cells.empty() ? 0 : std::ranges::count_if(cells.back(), [&](char c) {
+        return std::string_view(kind).find(c) != std::string_view::npos;
+      });
+    };
+    const bool is_unit = word.starts_with('(') || word.starts_with('[');
+    if (!cells.empty() && (joins || is_link || is_unit || brackets("([") > brackets(")]"))) {
+      cells.back() += " " + std::string(word);
+    } else {
+      cells.emplace_back(word);
+    }
+    joins = is_link;
+  }
+  return cells;
+}
+
+struct Header {
+  std::vector<std::string> cells;  // empty if there is another number of them than in a row
+  bool is_split_otherwise = false;
+};
+
+// A name for a table whose cells are between blanks: "Time(s)" for "Time ( s )".
+std::string without_blanks(std::string_view name) {
+  std::string joined;
+  for (const std::string_view word : words_of(name)) {
+    constexpr std::string_view opening = "([/", closing = ")]/";
+    const bool is_apart = !joined.empty() && opening.find(joined.back()) == opening.npos &&
+                          (closing.find(word.front()) == closing.npos);
+    if (is_apart) joined += '_';
+    joined += word;
+  }
+  return joined;
+}
+
+// The names in a line above rows of `width` cells. The line may be a comment, or its separator may
+// differ from that of the rows.
+Header names_in_line(const NumberedLine& line, char separator, size_t width) {
+  std::vector<std::string_view> parts;
+  split_cells(line.text, separator, parts);
+  if (!is_comment(line) && parts.size() == width) return {{parts.begin(), parts.end()}, false};
+  const size_t begin = std::min(line.text.find_first_not_of("#%/ \t"), line.text.size());
+  const std::string text(trimmed(std::string_view(line.text).substr(begin)));
+  std::vector<std::string> cells;
+  for (const char other : {separator, '\t', ';', ','}) {
+    split_cells(text, other, parts);
+    if (cells.size() != width) cells.assign(parts.begin(), parts.end());
+  }
+  if (cells.size() != width) {
+    cells.clear();
+    for (size_t at = 0; at < text.size();) {  // at several blanks
+      const size_t end = std::min(text.find("  ", at), text.size());
+      cells.push_back(text.substr(at, end - at));
+      at = std::min(text.find_first_not_of(' ', end), text.size());
+    }
+  }
+  if (cells.size() != width) cells = split_at_names(text);
+  if (cells.size() != width) return {};
+  if (separator == ' ') std::ranges::transform(cells, cells.begin(), without_blanks);
+  return {cells, true};
+}
+
+// Adds the names of the columns to a table whose rows start at `lines[first]`: those of the last
+// line above it that is neither a comment nor a single number or, if that has another number of
+// cells, of the comment above the rows or the last one that states a unit.
+void add_header(FileHead& head, const std::vector<NumberedLine>& lines, size_t first,
+                char separator, size_t width) {
+  const auto has_unit = [](const std::string& cell) {
+    return read_header_cell(cell).unit.has_value();
+  };
+  for (const bool of_comments : {false, true}) {
+    for (size_t k = first; k-- > 0 && head.header.empty();) {
+      const NumberedLine& line = lines[k];
+      if (is_comment(line) != of_comments || numbers_in(line, separator, 1)) continue;
+      Header names = names_in_line(line, separator, width);
+      const bool counts =
+          !of_comments || k + 1 == first || std::ranges::any_of(names.cells, has_unit);
+      if (counts && !names.cells.empty()) {
+        const std::vector<std::string> units = units_in(names.cells);
+        Header above;
+        if (!units.empty() && k > 0) above = names_in_line(lines[k - 1], separator, width);
+        const bool has_units = !above.cells.empty() && units_in(above.cells).empty();
+        if (has_units) head.units = units;
+        head.line = static_cast<int>(lines[has_units ? k - 1 : k].number);
+        head.header = has_units ? above.cells : names.cells;
+        head.is_split_otherwise = (has_units ? above : names).is_split_otherwise;
+        // A stated header has no line of units below it.
+        for (size_t i = 0; head.is_split_otherwise && i < head.units.size(); ++i) {
+          if (!head.units[i].empty()) head.header[i] += "(" + head.units[i] + ")";
+        }
+        if (head.is_split_otherwise) head.units.clear();
+      }
+      if (!of_comments) break;
+    }
+  }
+}
+
+// The first table with this separator. It has no column names if no line above it has the number of
+// cells of its rows.
 std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char separator,
                                  size_t fewest_cells) {
-  std::vector<std::string_view> cells, before;
   for (size_t i = 0; i < lines.size(); ++i) {
-    split_cells(lines[i].text, separator, cells);
-    if (!numbers_of(cells, separator, fewest_cells)) {
-      before = cells;
-      continue;
-    }
+    const auto first = numbers_in(lines[i], separator, fewest_cells);
+    if (!first) continue;
     FileHead head;
     head.first_row_line = static_cast<int>(lines[i].number);
-    head.line = i > 0 ? static_cast<int>(lines[i - 1].number) : 0;
-    head.names_above = i > 0 ? before.size() : 0;
-    const size_t width = cells.size();
-    if (i > 0 && before.size() == width) head.header.assign(before.begin(), before.end());
-    if (i > 1 && !head.header.empty()) {
-      const std::vector<std::string> units = units_in(before);
-      split_cells(lines[i - 2].text, separator, cells);
-      if (!units.empty() && cells.size() == width && units_in(cells).empty()) {
-        head.header.assign(cells.begin(), cells.end());
-        head.units = units;
-        head.line = static_cast<int>(lines[i - 2].number);
-      }
+    if (i > 0) {
+      std::vector<std::string_view> above;
+      split_cells(lines[i - 1].text, separator, above);
+      head.line = static_cast<int>(lines[i - 1].number);
+      if (!is_comment(lines[i - 1])) head.names_above = above.size();
     }
+    add_header(head, lines, i, separator, first->size());
     for (; i < lines.size(); ++i) {
-      split_cells(lines[i].text, separator, cells);
-      const auto row = numbers_of(cells, separator, fewest_cells);
-      if (row && row->size() == width) head.rows.push_back(*row);
+      auto row = numbers_in(lines[i], separator, fewest_cells);
+      if (row && row->size() == first->size()) head.rows.push_back(*std::move(row));
     }
     return head;
   }
@@ -124,11 +227,7 @@ std::string proposed_names(const FileHead& table) {
   const size_t width = table.rows.front().size();
   size_t time = 0;
   for (size_t k = width; k-- > 0;) {
-    bool rises = true;
-    for (size_t i = 1; i < table.rows.size(); ++i) {
-      rises = rises && table.rows[i][k] > table.rows[i - 1][k];
-    }
-    if (rises) time = k;
+    if (rises(table, k)) time = k;
   }
   const std::string clock = clock_unit(table, time) == "us" ? "t_us" : "t_s";
   std::vector<const char*> others;
@@ -165,17 +264,19 @@ InputError without_header(const std::filesystem::path& path, const FileHead& tab
 
 }  // namespace
 
-FileHead head_of(const std::filesystem::path& path, const std::vector<std::string>& header) {
-  const std::vector<NumberedLine> lines = first_lines(path, header);
-  const size_t fewest_cells = header.size() == 1 ? 1 : 2;
-  std::optional<FileHead> unnamed;
-  for (const char separator : {',', ';', '\t', ' '}) {
-    auto table = table_in(lines, separator, fewest_cells);
-    if (!table) continue;
-    if (!table->header.empty()) return *std::move(table);
-    if (!unnamed || table->rows.size() > unnamed->rows.size()) unnamed = std::move(table);
+FileHead head_of(const std::filesystem::path& path, const RecordingOptions& reading) {
+  const std::vector<NumberedLine> lines = first_lines(path, reading.header);
+  for (size_t fewest_cells = reading.header.size() == 1 ? 1 : 2; fewest_cells > 0; --fewest_cells) {
+    if (fewest_cells == 1 && reading.header.size() != 1 && !reading.rate_Hz) break;
+    std::optional<FileHead> unnamed;
+    for (const char separator : {',', ';', '\t', ' '}) {
+      auto table = table_in(lines, separator, fewest_cells);
+      if (!table) continue;
+      if (!table->header.empty()) return *std::move(table);
+      if (!unnamed || table->rows.size() > unnamed->rows.size()) unnamed = std::move(table);
+    }
+    if (unnamed) throw without_header(path, *unnamed);
   }
-  if (unnamed) throw without_header(path, *unnamed);
   const auto is_number = [](const NumberedLine& line) {
     return !std::isnan(number_of_cell(trimmed(line.text), ';').value_or(NAN));
   };

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "attitude/recordings/aem.h"
 #include "core/errors.h"
 #include "core/text/format.h"
+#include "diagnosis/guess/file_head.h"
 #include "diagnosis/light/model/recording.h"
 #include "diagnosis/light/module/nominal.h"
 #include "photovoltaics/fit/fit.h"
@@ -86,9 +88,15 @@ void guess_module(TomlDocument& document, const std::vector<fs::path>& recording
   const MeasuredCurve& clearest = *std::min_element(
       curves.begin(), curves.end(),
       [](const MeasuredCurve& a, const MeasuredCurve& b) { return a.misfit < b.misfit; });
-  if (!std::isfinite(clearest.misfit)) {
-    throw InputError({clearest.file.string()}, "rows", "a curve that no diode fits",
-                     "a current-voltage curve of a lit module");
+  constexpr double largest_misfit = 0.2;
+  if (!(clearest.misfit < largest_misfit)) {
+    const std::string to = clearest.misfit < 10.0
+                               ? " better than to " + readable_number(100.0 * clearest.misfit, 2) +
+                                     " % of its largest current"
+                               : "";
+    throw InputError({clearest.file.string()}, "rows", "a curve that no diode fits" + to,
+                     "a current-voltage curve of a lit module: not a log over time, a resistor or "
+                     "a dark curve");
   }
   const int cells = cells_in_series(clearest.open_V);
   const fs::path reference = fs::absolute(clearest.file).lexically_proximate(fs::absolute(folder));
@@ -114,7 +122,7 @@ void guess_module(TomlDocument& document, const std::vector<fs::path>& recording
 }
 
 std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
-                             const std::filesystem::path& folder, const RecordingOptions& reading) {
+                             const std::filesystem::path& folder, RecordingOptions reading) {
   if (recordings.empty()) {
     throw InputError({}, "--guess", "nothing", "a recording (CSV), or several of one machine");
   }
@@ -125,8 +133,12 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
   document.add_to_head("Made by photorque diagnose --guess from " + names +
                        ". Values were read from there; assumptions are marked CONFIRM.");
   if (!is_light_recording(recordings.front(), reading)) {
-    if (!has_motion(guess_columns(recordings.front(), reading.header))) {
-      const GuessedCurve curve = guess_curve(recordings.front(), reading.header);
+    if (!is_aem(recordings.front())) {
+      const FileHead head = head_of(recordings.front(), reading);
+      if (head.is_split_otherwise) reading.header = head.header;
+    }
+    if (!has_motion(guess_columns(recordings.front(), reading))) {
+      const GuessedCurve curve = guess_curve(recordings.front(), reading);
       if (!curve.columns.empty()) {
         guess_module(document, recordings, folder, curve, reading);
         return document.text();
@@ -135,16 +147,23 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
     guess_motion(document, recordings, reading);
     return document.text();
   }
-  const LightRecording first = read_light_recording(recordings.front(), {}, reading);
-  if (first.kind != LightRecording::Kind::sweep) {
+  if (light_kind_of(recordings.front(), reading) != LightRecording::Kind::sweep) {
     throw InputError({recordings.front().string()}, "header", "a recording of light on a scene",
                      "motion, or current over voltage: a scan or a run needs its scene, which "
                      "photorque new --scene MODEL begins");
   }
-  // A current density requires an assumed area.
-  const GuessedCurve curve = guess_curve(recordings.front(), reading.header);
-  guess_module(document, recordings, folder, curve.because.empty() ? GuessedCurve{} : curve,
-               reading);
+  // Columns are stated if the file is not read without, as with "Voltage (in V)", or if a current
+  // density requires an assumed area.
+  GuessedCurve curve = guess_curve(recordings.front(), reading);
+  if (curve.because.empty()) {
+    try {
+      read_light_recording(recordings.front(), {}, reading);
+      curve = {};
+    } catch (const InputError&) {
+      if (curve.columns.empty()) throw;
+    }
+  }
+  guess_module(document, recordings, folder, curve, reading);
   return document.text();
 }
 

@@ -18,8 +18,7 @@ namespace photorque {
 // InputError for files that are neither recordings of motion nor curves of current over voltage,
 // with the remedy if known.
 std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
-                             const std::filesystem::path& folder,
-                             const RecordingOptions& reading = {});
+                             const std::filesystem::path& folder, RecordingOptions reading = {});
 
 // Adds to the experiment the values that the recordings determine.
 void guess_motion(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
@@ -49,21 +48,21 @@ struct GuessedColumn {
   std::string shared = {};
 };
 
-// Columns of a CSV file. Its header is `header` or the last line before the first row of numbers
-// that has as many cells. A clock without a unit in its name is recognised by its steps; without a
-// clock, a column that counts frames has the channel "frame". For a CCSDS AEM: its quaternion.
-// Throws InputError with the remedy for a file without such a header, with decimal commas, in
-// UTF-16, or with an angle, a rate, a coordinate or a time in an unknown unit.
+// Columns of a CSV file. Its header is `reading.header` or the last line before the first row of
+// numbers that has as many cells. A clock without a unit in its name is recognised by its steps;
+// without a clock, a column that counts frames has the channel "frame". For a CCSDS AEM: its
+// quaternion. Throws InputError with the remedy for a file without such a header, with decimal
+// commas, in UTF-16, or with an angle, a rate, a coordinate or a time in an unknown unit.
 std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path,
-                                         const std::vector<std::string>& header = {});
+                                         const RecordingOptions& reading = {});
 
 // Whether one of them is an angle, a rate, a quaternion or a coordinate.
 bool has_motion(const std::vector<GuessedColumn>& columns);
 
 // The voltage and the current of a file whose header names one of each.
-GuessedCurve guess_curve(const std::filesystem::path& path, const std::vector<std::string>& header);
+GuessedCurve guess_curve(const std::filesystem::path& path, const RecordingOptions& reading);
 
 // The names of the columns in quotes, for messages.
-std::string names_in(const std::filesystem::path& path, const std::vector<std::string>& header);
+std::string names_in(const std::filesystem::path& path, const RecordingOptions& reading);
 
 }  // namespace photorque

@@ -51,13 +51,26 @@ std::string in_ascii(uint32_t code, bool of_unit) {
       return " theta ";
     case 0x3D5:
       return " phi ";
+    case 0x3A9:
     case 0x2126:  // ohm sign
-      return " omega ";
+      return of_unit ? "ohm" : " omega ";
+    // Subscripts and superscripts. Unicode has no subscript y; a small gamma serves as one.
+    case 0x2B8:
+    case 0x1D67:
+      return "y";
+    case 0x2E3:
+    case 0x1D6A:
+      return "x";
+    case 0x1DBB:
+      return "z";
     case 0x307:  // combining dots: derivatives
       return " dot ";
     default:
       break;
   }
+  if (code >= 0x2080 && code <= 0x2089) return std::string(1, "0123456789"[code - 0x2080]);
+  if (code >= 0x2090 && code <= 0x209C) return std::string(1, "aeoxehklmnpst"[code - 0x2090]);
+  if (code >= 0x1D62 && code <= 0x1D65) return std::string(1, "iruv"[code - 0x1D62]);
   if (code >= 0xC0 && code <= 0xFF) return std::string(1, latin[code - 0xC0]);
   if (code >= 0x391 && code <= 0x3A9) return std::string(" ") + greek[code - 0x391] + " ";
   if (code >= 0x3B1 && code <= 0x3C9) return std::string(" ") + greek[code - 0x3B1] + " ";
@@ -120,8 +133,12 @@ constexpr Spelling angles[] = {
     {"rad",
      "rad rads radian radians radiant radianten radianes radianti radiano radianos "
      "bogenmass"},
-    {"mrad", "mrad milliradian milliradians"},
-    {"deg", "deg degs degree degrees grad grados grado gradi graus grau degre degres"},
+    {"mrad", "mrad mrads milliradian milliradians"},
+    {"urad", "urad urads microradian microradians"},
+    {"mdeg", "mdeg mdegs millideg millidegs millidegree millidegrees"},
+    {"deg",
+     "deg degs degree degrees grad graden grader stopni grados grado gradi graus grau degre "
+     "degres"},
     {"arcsec", "arcsec arcsecs arcsecond arcseconds bogensekunde bogensekunden"},
     {"arcmin", "arcmin arcmins arcminute arcminutes bogenminute bogenminuten"},
     {"rev", "rev revs revolution revolutions turn turns umdrehung umdrehungen vuelta vueltas"}};
@@ -139,26 +156,25 @@ constexpr Spelling turns[] = {
      "umdrehung umdrehungen tr trs tour tours giro giri giros vuelta vueltas volta voltas "
      "revolucion revoluciones rotacoes rotacao rotazioni cycle cycles"}};
 
+// A unit of this quantity. Channels can have it if keys can.
+HeaderUnit unit_if_known(const std::string& suffix, const std::string& dimension) {
+  const KeyUnit known = unit_of_key("x_" + suffix);
+  const bool is_known = known.unit == suffix && known.dimension == dimension;
+  return {is_known ? suffix : "", dimension};
+}
+
 // The unit "above per below": radians per second for "rad" and "s".
 std::optional<HeaderUnit> ratio(const std::string& above, const std::string& below) {
   const std::string time = spelled(below, times), angle = spelled(above, angles);
   if (time.empty()) return std::nullopt;
-  if (!angle.empty() && angle != "rev") {
-    const bool is_usual = time == "s" && (angle == "rad" || angle == "deg");
-    return HeaderUnit{is_usual ? angle + "_s" : "", "angular rate"};
-  }
+  if (!angle.empty() && angle != "rev") return unit_if_known(angle + "_" + time, "angular rate");
   if (!spelled(above, turns).empty() || above == "1") {
     if (time == "min") return HeaderUnit{"rpm", "angular rate"};
     if (time == "s" && above == "1") return HeaderUnit{"", "per second"};
     return HeaderUnit{time == "s" ? "rev_s" : "", "angular rate"};
   }
   const std::string length = spelled(above, lengths);
-  if (!length.empty()) {
-    std::string suffix = length + "_" + time;
-    const KeyUnit known = unit_of_key("speed_" + suffix);
-    if (known.dimension != "speed" || known.unit != suffix) suffix.clear();
-    return HeaderUnit{suffix, "speed"};
-  }
+  if (!length.empty()) return unit_if_known(length + "_" + time, "speed");
   return std::nullopt;
 }
 
@@ -203,26 +219,34 @@ std::optional<HeaderUnit> unit_written(std::string_view text) {
       {{"T", "magnetic field"}, {"T"}},   {{"uT", "magnetic field"}, {"uT"}},
       {{"nT", "magnetic field"}, {"nT"}}, {{"", "magnetic field"}, {"mT", "G", "gauss", "Gauss"}},
       {{"V", "voltage"}, {"V"}},          {{"mV", "voltage"}, {"mV"}},
-      {{"A", "current"}, {"A"}},          {{"mA", "current"}, {"mA"}}};
+      {{"A", "current"}, {"A"}},          {{"mA", "current"}, {"mA"}},
+      {{"nm", "length"}, {"nm"}},         {{"", "power"}, {"W", "mW", "uW", "kW", "Wh", "J"}}};
   static const Units whole = {
       {{"rpm", "angular rate"}, {"rpm", "upm"}},
       {{"rev_s", "angular rate"}, {"rps"}},
-      {{"deg_s", "angular rate"}, {"dps", "deg s"}},
-      {{"rad_s", "angular rate"}, {"rad s"}},
+      {{"deg_s", "angular rate"}, {"dps"}},
+      {{"mdeg_s", "angular rate"}, {"mdps"}},
+      {{"", "angle"}, {"gon", "mgon", "count", "counts", "tick", "ticks", "lsb"}},
+      {{"", "length"}, {"au"}},
       {{"rev_s", "frequency"}, {"hz", "hertz"}},
       {{"m_s2", "acceleration"}, {"m/s2", "m/s/s", "m s-2", "ms-2"}},
       {{"", "acceleration"}, {"g", "mg"}},
       {{"", "angular acceleration"},
        {"rad/s2", "rad/s/s", "deg/s2", "deg/s/s", "rad s-2", "deg s-2"}},
       {{"mph", "speed"}, {"mph"}},
-      {{"km_h", "speed"}, {"kmh", "kph", "km h"}},
+      {{"km_h", "speed"}, {"kmh", "kph"}},
       {{"", "speed"}, {"knots"}},
+      {{"", "power"}, {"watt", "watts", "milliwatt", "milliwatts"}},
+      {{"", "resistance"}, {"ohm", "ohms", "kohm", "mohm"}},
+      {{"", "illuminance"}, {"lux", "lx", "klx"}},
       {{"V", "voltage"}, {"volt", "volts", "voltios"}},
       {{"mV", "voltage"}, {"millivolt", "millivolts"}},
       {{"A", "current"}, {"amp", "amps", "ampere", "amperes", "amperios"}},
       {{"mA", "current"}, {"milliampere", "milliamps"}},
       {{"mA", "current density"}, {"ma/cm2", "ma cm-2", "macm-2"}},
       {{"A", "current density"}, {"a/cm2", "a cm-2", "acm-2", "a/m2", "a m-2"}}};
+  text = trimmed(text);
+  if (text.starts_with("in ")) text.remove_prefix(3);  // "Voltage (in V)"
   const std::string as_written(trimmed(ascii_of(text, true))), plain = plain_unit(text);
   const auto unit_in = [](const Units& units, const std::string& word) -> const HeaderUnit* {
     for (const auto& [unit, words] : units) {
@@ -242,7 +266,11 @@ std::optional<HeaderUnit> unit_written(std::string_view text) {
   if (slash != std::string::npos && plain.find('/', slash + 1) == std::string::npos) {
     return ratio(plain.substr(0, slash), plain.substr(slash + 1));
   }
-  return with_exponent(plain);
+  if (const auto unit = with_exponent(plain)) return unit;
+  // An underscore or a blank may replace the slash: "mrad_s".
+  const size_t blank = plain.find(' ');
+  if (blank == std::string::npos || (blank == 1 && plain[0] != 'm')) return std::nullopt;
+  return ratio(plain.substr(0, blank), plain.substr(blank + 1));
 }
 
 std::vector<std::string> words_of_header(std::string_view text) {
@@ -349,10 +377,10 @@ bool take_after_slash(std::string_view text, HeaderCell& cell, std::string& name
 bool is_bare_unit(std::string_view text) {
   if (text.empty() || !unit_written(text)) return false;
   constexpr std::string_view brackets = "([{";
-  // Single letters are names of quantities, except s for seconds.
+  // Single letters are names of quantities, except s for seconds and W for watts.
   return text.size() > 1 ? brackets.find(text.front()) != std::string_view::npos ||
                                text.find(" / ") == std::string_view::npos
-                         : text == "s";
+                         : text == "s" || text == "W";
 }
 
 }  // namespace

@@ -122,6 +122,9 @@ SettingsNode::Table& add_machine(TomlDocument& document, const Machine& m) {
   return table;
 }
 
+// Most of the changes of the rates that inertia may leave, of those of a free body.
+constexpr double explains = 0.2;
+
 // Adds ratios of the moments of inertia as far as rates alone determine them.
 void add_inertia(TomlDocument& document, SettingsNode::Table& table,
                  const std::vector<Observation>& runs) {
@@ -132,8 +135,8 @@ void add_inertia(TomlDocument& document, SettingsNode::Table& table,
   if (!runs.front().has_gyro) value.diagonal() << 1.0, 0.8, 0.6;
   sigma << 0, 0.2, 0.2, 0.2, 0.4, 0.2, 0.2, 0.2, 0.4;
   constexpr double worth_saying = 0.1;
-  const bool is_known = found && found->sigma(0) < worth_saying && found->sigma(1) < worth_saying &&
-                        found->sigma(2) < worth_saying;
+  const bool is_known = found && found->left < explains && found->sigma(0) < worth_saying &&
+                        found->sigma(1) < worth_saying && found->sigma(2) < worth_saying;
   std::string why = "CONFIRM: the rates do not determine the ratios of the moments; guessed.";
   if (is_known) {
     // The first moment is the unit. Unknown torques shift the ratios by more than their standard
@@ -368,7 +371,6 @@ void infer_machine(Machine& m) {
   }
   m.observe_as(Topology::tabletop);
   const std::optional<FreeInertia> found = free_inertia(m.runs);
-  constexpr double explains = 0.2;
   if (found && found->left < explains && !m.is_commanded()) {
     m.why = "its rates change as its own inertia makes them: nothing carries it.";
     return m.observe_as(Topology::free);
@@ -450,7 +452,7 @@ void require_motion(const fs::path& path, const std::vector<GuessedColumn>& colu
     expected =
         "a quantity with its unit, such as \"angle (deg)\", rate_rpm, gyro_x_rad_s, or x_m and y_m";
   }
-  throw InputError({path.string()}, "header", found + names_in(path, reading.header),
+  throw InputError({path.string()}, "header", found + names_in(path, reading),
                    counts || first != columns.end()
                        ? expected
                        : expected +
@@ -511,7 +513,7 @@ void add_sequence(TomlDocument& document, const Machine& m) {
 void guess_motion(TomlDocument& document, const std::vector<fs::path>& recordings,
                   const RecordingOptions& reading) {
   std::vector<GuessedColumn> columns =
-      without_computed_velocity(guess_columns(recordings.front(), reading.header));
+      without_computed_velocity(guess_columns(recordings.front(), reading));
   require_motion(recordings.front(), columns, reading);
   Machine m;
   std::optional<Circle> circle;

@@ -135,7 +135,8 @@ std::vector<Meaning> meanings(const Words& words, const std::string& axis, const
   if (!rate &&
       (words.has_word_with_prefix({"time", "elapsed", "clock", "temps", "tiempo", "tempo"}) ||
        words.any_has({"zeit", "timestamp"}) ||
-       words.any_is({"t", "sec", "secs", "second", "seconds", "millis", "micros"}))) {
+       words.any_is(
+           {"t", "sec", "secs", "second", "seconds", "millis", "micros", "tid", "tijd", "czas"}))) {
     const bool alone = words.all.size() == 1 || !words.any_is({"t"}) || cell.unit;
     if (alone || words.has_word_with_prefix({"time", "zeit", "temps", "tiempo", "tempo"})) {
       all.push_back({"t", "s"});
@@ -159,6 +160,9 @@ std::vector<Meaning> meanings(const Words& words, const std::string& axis, const
       (words.all == std::vector<std::string>{axis} ||
        words.has_word_with_prefix({"pos", "coord", "koord", "place", "puck", "cent", "ort"}))) {
     all.push_back({axis, "m"});
+  }
+  if (words.all == std::vector<std::string>{"s"}) {
+    all.push_back({"x", "m", "s beside another time counts as the distance x:"});
   }
   // The single coordinate of a body that moves on a line, and its speed.
   const bool is_long = !cell.unit || cell.unit->dimension == "length";
@@ -233,10 +237,11 @@ std::string quaternion_of(const std::vector<std::string>& words) {
 
 // Accepted units of a quantity, for messages.
 std::string units_for(const std::string& dimension) {
-  return dimension == "time"           ? "s, ms, µs, min or h"
-         : dimension == "angle"        ? "rad, mrad, deg (°), arcmin, arcsec or rev (the "
-                                         "counts of an encoder, divided by those of a turn)"
-         : dimension == "angular rate" ? "rad/s, deg/s (°/s), rpm (1/min, U/min, tr/min) or rev/s"
+  return dimension == "time"    ? "s, ms, µs, min or h"
+         : dimension == "angle" ? "rad, mrad, deg (°), µrad, mdeg, arcmin, arcsec or rev (the "
+                                  "counts of an encoder, divided by those of a turn)"
+         : dimension == "angular rate"
+             ? "rad/s, mrad/s, deg/s (°/s), mdeg/s, rpm (1/min, U/min, tr/min) or rev/s"
          : dimension == "length"       ? "m, cm or mm"
          : dimension == "speed"        ? "m/s, cm/s, mm/s, km/h or mph"
          : dimension == "acceleration" ? "m/s²"
@@ -253,7 +258,9 @@ std::string fitting_unit(const HeaderCell& cell, const std::string& dimension, c
   if (unit.dimension == dimension) return unit.suffix;
   if (dimension != "angular rate") return "";
   // In a name such as "omega_rads" the unit is rad/s.
-  if (cell.unit_text == "rads" || cell.unit_text == "degs") return unit.suffix + "_s";
+  if (cell.unit_text.ends_with("rads") || cell.unit_text.ends_with("degs")) {
+    return unit.suffix + "_s";
+  }
   if (unit.dimension == "frequency") return unit.suffix;
   if (unit.dimension != "per second") return "";
   // 1/s means rad/s for an angular frequency ω, and rev/s for a rotational speed n.
@@ -284,12 +291,13 @@ struct ReadColumn {
   bool by_unit = false;
 };
 
-// A quantity whose unit is rad or rad/s is an angle or a rate, whatever its name.
-ReadColumn by_unit(const std::string& in_file, const HeaderCell& cell, const Words& words) {
-  ReadColumn column{{in_file, ""}, "", "", "", true};
+// A quantity whose unit is rad or rad/s is an angle or a rate, and one that rises in seconds is the
+// time, whatever its name.
+ReadColumn by_unit(const FileHead& head, size_t place, const HeaderCell& cell, const Words& words) {
+  ReadColumn column{{head.header[place], ""}, "", "", "", true};
   if (!cell.unit || cell.unit->suffix.empty() || is_of_another_kind(words)) return column;
   const std::string& dimension = cell.unit->dimension;
-  if (dimension == "time" && cell.is_bare_unit) {
+  if (dimension == "time" && !cell.may_be_subscript && (cell.is_bare_unit || rises(head, place))) {
     column.stem = "t";
   } else if (dimension == "angle" && !cell.may_be_subscript) {
     column.stem = "angle";
@@ -346,6 +354,18 @@ std::string unit_of_angle(const FileHead& head, size_t place) {
   return returns && most - least > 2.0 * pi ? "deg" : "rad";
 }
 
+// Whether the last word belongs to an unknown unit per time: "rate_z_gon_s". The name means the
+// same without it, and it is no axis or number.
+bool is_part_of_unit(const Words& words, const std::string& axis, const HeaderCell& cell,
+                     const std::vector<Meaning>& all) {
+  if (all.empty() || words.all.size() < 2 || cell.unit->dimension != "time") return false;
+  Words shorter = words;
+  const std::string last = shorter.all.back();
+  shorter.all.pop_back();
+  const std::vector<Meaning> without = meanings(shorter, axis, cell);
+  return last.size() > 1 && !without.empty() && without.front().stem == all.front().stem;
+}
+
 ReadColumn read_column(const FileHead& head, size_t place, HeaderCell cell,
                        const std::vector<Words>& siblings) {
   const std::string& in_file = head.header[place];
@@ -385,18 +405,23 @@ ReadColumn read_column(const FileHead& head, size_t place, HeaderCell cell,
     // If the stated unit contradicts the quantity (an angle in rad/s, a rate in 1/s), no unit can
     // be assumed.
     const auto is_of_turns = [](const std::string& dimension) {
-      return dimension == "angle" || dimension == "angular rate" || dimension == "per second";
+      return dimension == "angle" || dimension == "angular rate" || dimension == "per second" ||
+             dimension == "frequency";
     };
     for (const Meaning& meaning : all) {
       const std::string dimension = dimension_of(meaning);
       const bool contradicts = is_of_turns(dimension) && is_of_turns(cell.unit->dimension);
       if (cell.unit->dimension == dimension || contradicts) return has_wrong_unit(meaning);
     }
-    if (!cell.may_be_subscript) return by_unit(in_file, cell, words);
+    if (is_part_of_unit(words, axis, cell, all)) {
+      cell.unit_text = words.all.back() + "/" + cell.unit_text;
+      return has_wrong_unit(all.front());
+    }
+    if (!cell.may_be_subscript) return by_unit(head, place, cell, words);
   } else if (!cell.unit_text.empty()) {
     return all.empty() ? column : has_wrong_unit(all.front());
   }
-  if (all.empty()) return by_unit(in_file, cell, words);
+  if (all.empty()) return by_unit(head, place, cell, words);
   const Meaning& meaning = all.front();
   const std::string usual =
       meaning.stem == "t"                   ? (words.any_is({"millis"})   ? "ms"
@@ -462,9 +487,44 @@ std::vector<ReadColumn> read_columns(const FileHead& head) {
     cells.push_back(cell_of(head, place));
     words.push_back({cells.back().words});
   }
+  // In physics s is a distance if another column is the time.
+  const auto is_s = [](const HeaderCell& cell) {
+    return cell.is_bare_unit && cell.unit_text == "s";
+  };
+  const bool has_time = std::ranges::any_of(words, [&](const Words& w) {
+    const std::vector<Meaning> all = meanings(w, "", {});
+    return !all.empty() && all.front().stem == "t";
+  });
+  for (size_t place = 0; has_time && place < cells.size(); ++place) {
+    if (!is_s(cells[place])) continue;
+    cells[place] = HeaderCell();
+    words[place] = {{"s"}};
+  }
   std::vector<ReadColumn> columns;
   for (size_t place = 0; place < cells.size(); ++place) {
     columns.push_back(read_column(head, place, cells[place], words));
+  }
+  const auto is_unsure = [](const ReadColumn& c, const char* stem) {
+    return c.guess.channel.starts_with(stem) && !c.guess.is_sure && !c.by_unit;
+  };
+  // A velocity without a unit beside a coordinate is that of the coordinate.
+  const bool has_place = std::ranges::any_of(columns, [](const ReadColumn& c) {
+    return begins(c.guess.channel, {"x_", "y_"});
+  });
+  for (size_t k = 0; has_place && k < columns.size(); ++k) {
+    if (is_unsure(columns[k], "rate_") &&
+        words[k].has_word_with_prefix({"speed", "vel", "vitesse"})) {
+      columns[k].guess.channel.clear();
+    }
+  }
+  // The angles of a file have one unit.
+  const bool has_degrees = std::ranges::any_of(columns, [&](const ReadColumn& c) {
+    return is_unsure(c, "") && c.guess.channel.ends_with("_deg");
+  });
+  for (ReadColumn& c : columns) {
+    if (has_degrees && is_unsure(c, "") && c.guess.channel.ends_with("_rad")) {
+      c.guess.channel = c.stem + "_deg";
+    }
   }
   keep_first_of_each(columns);
   read_lone_wheel(columns);
@@ -478,12 +538,9 @@ void read_counter(const FileHead& head, std::vector<ReadColumn>& columns) {
     const bool is_counter =
         words.has_word_with_prefix({"frame", "sampl", "index", "bild", "fotogram", "trame"}) ||
         words.any_is({"n", "nr", "no", "num", "image", "images"});
-    bool rises = true;
-    for (size_t i = 0; i < head.rows.size(); ++i) {
-      const double count = head.rows[i][k];
-      rises = rises && count == std::round(count) && (i == 0 || count > head.rows[i - 1][k]);
-    }
-    if (!is_counter || !rises || !columns[k].guess.channel.empty()) continue;
+    const bool is_whole = std::ranges::all_of(
+        head.rows, [k](const auto& row) { return row[k] == std::round(row[k]); });
+    if (!is_counter || !is_whole || !rises(head, k) || !columns[k].guess.channel.empty()) continue;
     columns[k].guess.channel = "frame";
     return;
   }
@@ -508,9 +565,9 @@ void refuse_wrong_units(const std::vector<ReadColumn>& columns, const InputLocat
 }  // namespace
 
 std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path,
-                                         const std::vector<std::string>& header) {
+                                         const RecordingOptions& reading) {
   if (is_aem(path)) return {{"q_w", "q_w"}, {"q_x", "q_x"}, {"q_y", "q_y"}, {"q_z", "q_z"}};
-  const FileHead head = head_of(path, header);
+  const FileHead head = head_of(path, reading);
   std::vector<ReadColumn> columns = read_columns(head);
   if (!is_taken(columns, "t")) read_counter(head, columns);
   refuse_wrong_units(columns, {path.string(), head.line});
@@ -523,12 +580,11 @@ bool has_motion(const std::vector<GuessedColumn>& columns) {
   return std::ranges::any_of(columns, [](const GuessedColumn& c) { return is_motion(c.channel); });
 }
 
-GuessedCurve guess_curve(const std::filesystem::path& path,
-                         const std::vector<std::string>& header) {
+GuessedCurve guess_curve(const std::filesystem::path& path, const RecordingOptions& reading) {
   GuessedCurve curve;
   std::vector<size_t> voltages, currents;
   if (is_aem(path)) return curve;
-  const FileHead head = head_of(path, header);
+  const FileHead head = head_of(path, reading);
   std::vector<HeaderCell> cells;
   for (size_t place = 0; place < head.header.size(); ++place) {
     cells.push_back(cell_of(head, place));
@@ -569,8 +625,8 @@ GuessedCurve guess_curve(const std::filesystem::path& path,
   return curve;
 }
 
-std::string names_in(const std::filesystem::path& path, const std::vector<std::string>& header) {
-  return joined_text(head_of(path, header).header, ", ",
+std::string names_in(const std::filesystem::path& path, const RecordingOptions& reading) {
+  return joined_text(head_of(path, reading).header, ", ",
                      [&](const std::string& name) { return in_quotes(header_cell_text(name)); });
 }
 

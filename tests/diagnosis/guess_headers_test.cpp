@@ -93,6 +93,20 @@ TEST_F(Headers, OfAnglesAndRates) {
       {"encoder [turns]", "angle", turn},
       {"Drehwinkel in Umdrehungen", "angle", turn},
       {"speed (rev/s)", "rate", turn},
+      {"rate_mrad_s", "rate", 1e-3},
+      {"gyro_x_mdps", "gyro_x", 1e-3 * degree},
+      {"omega (mrad/s)", "rate", 1e-3},
+      {"omega_mrads", "rate", 1e-3},
+      {"angle_mdeg", "angle", 1e-3 * degree},
+      {"Winkel (µrad)", "angle", 1e-6},
+      {"omega_s", "rate", 1.0},
+      {"ωₓ (rad/s)", "gyro_x", 1.0},
+      {"ωᵧ [°/s]", "gyro_y", degree},
+      {"ωᶻ (rad/s)", "gyro_z", 1.0},
+      {"hoek (graden)", "angle", degree},
+      {"kąt [deg]", "angle", degree},
+      {"speed_mm_s", "velocity_x", 1e-3},
+      {"v_m_s", "velocity_x", 1.0},
       {"α [°]", "angle", degree},
       {"wheel_rpm", "rate", turn / 60.0},
       {"drum_rpm", "rate", turn / 60.0},
@@ -156,7 +170,10 @@ TEST_F(Headers, OfTimes) {
                             {"tempo em minutos", "t", 60.0},
                             {"timeMs", "t", 1e-3},
                             {"Elapsed Time (h)", "t", 3600.0},
-                            {"TimeSinceFirstFrame(s)", "t", 1.0}};
+                            {"TimeSinceFirstFrame(s)", "t", 1.0},
+                            {"tijd (s)", "t", 1.0},
+                            {"čas [ms]", "t", 1e-3},
+                            {"vrijeme / min", "t", 60.0}};
   for (const Expected& expected : table) {
     expected.expect_of(channels(expected.header + std::string(";rate_rpm")).at(0));
   }
@@ -172,13 +189,35 @@ TEST_F(Headers, OfOtherQuantitiesAreNoMotion) {
   }
 }
 
+// Channels of the program, in all units that its keys have, are themselves.
+TEST_F(Headers, OfChannelsAreThoseChannels) {
+  const std::pair<const char*, std::vector<const char*>> known[] = {
+      {"angle", {"angle", "roll", "pitch", "yaw", "tilt"}},
+      {"angular rate", {"rate", "gyro_x", "gyro_y", "gyro_z", "rate_magnitude"}},
+      {"length", {"x", "y"}},
+      {"speed", {"velocity_x", "velocity_y"}},
+      {"acceleration", {"accel_z"}},
+      {"magnetic field", {"mag_y"}}};
+  for (const auto& [dimension, stems] : known) {
+    for (const KeyUnit& unit : units_of(dimension)) {
+      if (unit.unit == "au") continue;  // refused: also an arbitrary unit
+      for (const char* stem : stems) {
+        const std::string channel = std::string(stem) + "_" + unit.unit;
+        EXPECT_EQ(channels("t_s;" + channel).at(1), channel);
+      }
+    }
+  }
+}
+
 TEST_F(Headers, OfUnknownUnitsAreRefused) {
   for (const char* header : {"angle (gon)", "Encoder (counts)", "Winkel / Skt", "Winkel (rad/s)"}) {
     EXPECT_THAT(refusal_of([&] { channels(std::string("t_s;") + header); }),
                 AllOf(HasSubstr("the unit"), HasSubstr("rad, mrad, deg (°)")))
         << header;
   }
-  for (const char* header : {"speed (furlong)", "omega (deg)", "speed (1/s)", "ω [deg/min]"}) {
+  for (const char* header :
+       {"speed (furlong)", "omega (deg)", "speed (1/s)", "ω [deg/min]", "rate_z_deg_min",
+        "omega_rad_h", "rate_z_gon_s", "gyro_x_lsb", "rate (kHz)"}) {
     EXPECT_THAT(refusal_of([&] { channels(std::string("t_s;") + header); }),
                 AllOf(HasSubstr("the unit"), HasSubstr("rpm (1/min")))
         << header;
@@ -251,8 +290,12 @@ TEST_F(Headers, OfCurvesOfAModule) {
     }
     return guess_experiment({test_file("curve.csv", text)}, testing::TempDir());
   };
-  for (const char* header : {"U/V;I/A", "U / V;I / A", "No.;U;I", "Nr.;Spannung (V);Strom (A)",
-                             "Panel Voltage;Panel Current", "U_mod [V];I_mod [A]"}) {
+  for (const char* header :
+       {"U/V;I/A", "U / V;I / A", "No.;U;I", "Nr.;Spannung (V);Strom (A)",
+        "Panel Voltage;Panel Current", "U_mod [V];I_mod [A]", "Voltage (in V);Current [in A]",
+        "Voltage (in volts);I (in amps)", "Power in mW;Voltage (V);Current (A)",
+        "power_W;Voltage (V);Current (A)", "Widerstand in kOhm;Spannung in V;Strom in A", "W;U;I",
+        "R (Ω);Spannung in V;Strom in A"}) {
     EXPECT_THAT(curve(header, 2.0), AllOf(HasSubstr("[module]"), Not(HasSubstr("density"))))
         << header;
   }
@@ -285,6 +328,14 @@ TEST_F(Headers, OfCurvesThatAMeterMade) {
     return refusal_of([&] { guess_experiment({test_file("few.csv", text)}, testing::TempDir()); });
   };
   EXPECT_THAT(refusal("V,I\n0,5\n10,4\n20,0\n"), HasSubstr("at least 12 points"));
+  // A resistor of 2 ohm, and a tracker that goes about one point of a module.
+  std::string resistor = "V,I\n", log = resistor;
+  for (int i = 0; i < 40; ++i) {
+    resistor += printed("%d,%.1f\n", i, 0.5 * i);
+    log += printed("%.3f,%.3f\n", 17.0 + std::sin(2.1 * i), 3.0 + 2.5 * std::sin(0.9 * i));
+  }
+  EXPECT_THAT(refusal(resistor), HasSubstr("a curve that no diode fits"));
+  EXPECT_THAT(refusal(log), HasSubstr("not a log over time"));
 }
 
 TEST_F(Headers, AreAskedForWithACommandForAShell) {
@@ -316,6 +367,76 @@ TEST_F(Headers, UnitsInALineBelowAreRead) {
   ASSERT_EQ(read.rows(), 40U);
   EXPECT_NEAR(read.time_s[10], 0.4, 1e-12);
   EXPECT_NEAR(read.find("angle_rad")->values[10], 1.0 * degree, 1e-12);
+}
+
+// Headers as numpy.savetxt and telephones write them: the guess states the names, and the recording
+// has the values of the first row.
+TEST_F(Headers, MayBeCommentsOrSeparatedOtherwise) {
+  const std::pair<const char*, const char*> files[] = {
+      {"# t [s], x [cm], y [cm]\n", "%d,%d,%d\n"},
+      {"# made by hand\n# t [s] x [cm] y [cm]\n", "%d %d %d\n"},
+      {"# t x y\n# s cm cm\n", "%d\t%d\t%d\n"},
+      {"t [s];x [cm];y [cm]\n", "%d %d %d\n"},
+      {"//run 3\n//Time ( s )  x ( cm )  y ( cm )\n", "%d  %d  %d\n"},
+      {"t / s  x / cm  y / cm\n# 0 1 2\n", "%d  %d  %d\n"}};
+  for (const auto& [header, row] : files) {
+    std::string text = header;
+    for (int i = 0; i < 30; ++i) text += printed(row, i, i * i, 100 - i);
+    const fs::path file = test_file("comment.txt", text);
+    const std::string toml = guess_experiment({file}, ".");
+    const Settings root(std::make_shared<const SettingsNode>(parse_toml(toml, "guess.toml")));
+    const Recording read = read_recording(file, read_recording_options(root.table("recording")));
+    ASSERT_EQ(read.rows(), 30U) << header;
+    ASSERT_NE(read.find("y_m"), nullptr) << header;
+    EXPECT_NEAR(read.time_s[3], 3.0, 1e-12) << header;
+    EXPECT_NEAR(read.find("x_m")->values[3], 0.09, 1e-12) << header;
+    EXPECT_NEAR(read.find("y_m")->values[3], 0.97, 1e-12) << header;
+  }
+  EXPECT_THAT(
+      refusal_of([&] { guess_columns(test_file("p.txt", "# by hand, at home, 2\n0 1\n1 2\n")); }),
+      HasSubstr("rows of 2 numbers without names"));
+}
+
+TEST_F(Headers, OfDistancesAndSpeedsBesideATime) {
+  const auto names = [&](const std::string& header) {
+    return channels_in(test_file("s.csv", header + "\n0,0,2,-2\n0.1,0.19,1.8,-2\n"));
+  };
+  EXPECT_THAT(names("t,s,v,a"), testing::ElementsAre("t_s", "x_m", "", ""));
+  EXPECT_THAT(names("Time,Position,Velocity,a"), testing::ElementsAre("t_s", "x_m", "", ""));
+  EXPECT_THAT(names("s,x,y,a"), testing::ElementsAre("t_s", "x_m", "y_m", ""));
+}
+
+// Roll over 40° is in degrees, and so is a yaw of 3°.
+TEST_F(Headers, AnglesOfAFileHaveOneUnit) {
+  std::string text = "time,roll,yaw\n";
+  for (int i = 0; i < 40; ++i) text += printed("%d,%.3f,%.3f\n", i, 20.0 * std::cos(i), 0.1 * i);
+  EXPECT_THAT(channels_in(test_file("angles.csv", text)),
+              testing::ElementsAre("t_s", "roll_deg", "yaw_deg"));
+}
+
+// Rows of a time alone, as of frames without a mark, outnumber the readings.
+TEST_F(Headers, OfRowsThatEndBehindTheTime) {
+  std::string text = "mass A\nt,x,y\n0\n";
+  for (int i = 1; i <= 90; ++i) {
+    text += i % 3 == 0 ? printed("%.1f,%d,2\n", 0.1 * i, i * i) : printed("%.1f\n", 0.1 * i);
+  }
+  const fs::path file = test_file("tracker.csv", text);
+  EXPECT_THAT(channels_in(file), testing::ElementsAre("t_s", "x_mm", "y_mm"));
+  RecordingOptions options;
+  options.columns = {{"t_s", "t"}, {"x_mm", "x"}, {"y_mm", "y"}};
+  const Recording read = read_recording(file, options);
+  EXPECT_EQ(read.rows(), 30U);
+  EXPECT_NEAR(read.find("x_m")->values[1], 0.036, 1e-12);
+}
+
+TEST_F(Headers, OfOneColumnWithAStatedRate) {
+  std::string text = "Drehzahl (1/min)\n";
+  for (int i = 0; i < 30; ++i) text += printed("%d\n", 1000 - i * i);
+  const fs::path file = test_file("one.csv", text);
+  EXPECT_THAT(refusal_of([&] { guess_columns(file); }), HasSubstr("one column of numbers"));
+  RecordingOptions reading;
+  reading.rate_Hz = 20.0;
+  EXPECT_EQ(guess_columns(file, reading).at(0).channel, "rate_rpm");
 }
 
 TEST_F(Headers, OfTwoBodiesAreRefusedWithACommandForOne) {

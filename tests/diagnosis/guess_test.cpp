@@ -557,6 +557,19 @@ TEST(Guess, APendulumIsNoFreeBodyByItsRates) {
                     HasSubstr("rate_rad_s = \"Gyroscope z (rad/s)\"")));
 }
 
+// Independent oscillations about three axes follow no tensor of inertia: it is guessed.
+TEST(Guess, RatesThatFollowNoInertiaGiveNoRatios) {
+  std::string text = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
+  for (int i = 0; i < 600; ++i) {
+    const double t = 0.05 * i;
+    text += printed("%.2f,%.4f,%.4f,%.4f\n", t, 2.0 * std::sin(1.1 * t), 2.0 * std::cos(1.3 * t),
+                    2.0 + std::sin(0.3 * t));
+  }
+  const std::string toml = guess_experiment({test_file("driven.csv", text)}, ".");
+  EXPECT_THAT(toml, HasSubstr("do not determine the ratios"));
+  EXPECT_TRUE(machine(toml).model.platform.inertia_kg_m2.isApprox(Mat3::Identity()));
+}
+
 TEST(Guess, AThrowHasTheRatiosOfItsMoments) {
   const fs::path file = fs::path(testing::TempDir()) / "throw.csv";
   write_recording(file, thrown(board, {4.0, 2.0, 3.0}, 0.003, 7));
