@@ -583,5 +583,38 @@ TEST(Guess, AThrowHasTheRatiosOfItsMoments) {
   EXPECT_NEAR(model.sensors.gyro->noise_rad_s, 0.003, 0.0006);
 }
 
+// Dry friction 0.1 and viscous drag 0.67 stop a body of inertia 1 after 3.04 s; the gyro then reads
+// its bias of -0.03. The law of motion until then is v(t) = (1 + 0.1/0.67) exp(-0.67 t) - 0.1/0.67.
+TEST(Guess, AGyroThatReadsARateAtRestHasABias) {
+  constexpr double dry = 0.1, viscous = 0.67, bias_rad_s = -0.03;
+  const auto guessed_with = [&](double noise_rad_s, double end_s) {
+    Noise noise(17, noise_rad_s);
+    std::string text = "t_s,rate_rad_s\n";
+    for (int i = 0; 0.05 * i < end_s; ++i) {
+      const double t = 0.05 * i, v = (1.0 + dry / viscous) * std::exp(-viscous * t) - dry / viscous;
+      text += printed("%.2f,%.5f\n", t, std::max(v, 0.0) + bias_rad_s + noise());
+    }
+    return guess_experiment({new_file(text, ".csv")}, ".");
+  };
+  const Settings gyro =
+      settings_in(guessed_with(7e-4, 4.0)).table("sensors").table("gyro").table("bias_rad_s");
+  EXPECT_NEAR(gyro.vector3("value").z(), bias_rad_s, 1e-3);
+  // It still turns at the end.
+  EXPECT_THAT(guessed_with(7e-4, 2.0), Not(HasSubstr("bias_rad_s")));
+}
+
+// One row per turn, beside columns that are no motion: the turns are read as rates.
+TEST(Guess, UnusedColumnsDoNotHideTheTurnsOfAWheel) {
+  std::string text = "t_s,c2,angle_rev,c4\n";
+  for (int i = 0; i < 120; ++i) {
+    // 10 rev/s that fall by 0.05 rev/s²: the time of the i-th turn.
+    const double t = (10.0 - std::sqrt(100.0 - 0.1 * i)) / 0.05;
+    text += printed("%.6f,%d,%d,4.99\n", t, 15 - i % 2, 3403 + i);
+  }
+  const std::string guessed = guess_experiment({new_file(text, ".csv")}, ".");
+  EXPECT_THAT(guessed, Not(HasSubstr("pendulum")));
+  EXPECT_EQ(settings_in(guessed).table("platform").text("axis"), "z");
+}
+
 }  // namespace
 }  // namespace photorque
