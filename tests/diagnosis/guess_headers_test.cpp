@@ -486,5 +486,36 @@ TEST_F(Headers, PlacesOnACircleAreRemarked) {
               AllOf(HasSubstr("pivot_m"), Not(HasSubstr("angle_rad ="))));
 }
 
+TEST(Guess, AClockThatCountsMilliseconds) {
+  const fs::path file = test_file("clock.csv", "timestamp;gyro_z\n0;1\n20;1\n40;1\n60;1\n");
+  EXPECT_EQ(guess_columns(file).front().channel, "t_ms");
+  const fs::path fast = test_file("fast.csv", "timestamp;gyro_z\n0;1\n4000;1\n8000;1\n");
+  EXPECT_EQ(guess_columns(fast).front().channel, "t_us");
+}
+
+TEST(Guess, FilesThatCannotBeReadNameTheCure) {
+  const auto refusal = [&](const std::string& text) -> std::string {
+    return refusal_of([&] { guess_columns(test_file("bad.csv", text)); });
+  };
+  EXPECT_THAT(refusal("0,0;1,5;2\n0,1;1,6;3\n"), HasSubstr("bad.csv --columns t_s,x_m,y_m ("));
+  EXPECT_THAT(refusal("0,1\n0.1,2\n"), HasSubstr("--columns t_s,angle_rad ("));
+  EXPECT_THAT(refusal(std::string("\xff\xfet\0_\0s\0", 8)),
+              AllOf(HasSubstr("UTF-16"), HasSubstr("iconv -f UTF-16")));
+  EXPECT_THAT(refusal("nothing here\n"), HasSubstr("no rows of numbers"));
+  EXPECT_THAT(
+      refusal("speed\n29.1\n28.8\n28.6\n"),
+      AllOf(HasSubstr("one column of numbers"), HasSubstr("--columns rate_rad_s --rate-Hz 10")));
+}
+
+// Tables as programs of other countries and calculators write them.
+TEST(Guess, BlanksAndDecimalCommasAreRead) {
+  const fs::path blanks = test_file("blanks.txt", "time  theta\n 0.0   1.5\n 0.1   1.6\n");
+  EXPECT_EQ(guess_columns(blanks)[1].channel, "angle_rad");
+  const fs::path german =
+      test_file("messung.csv", "Messung vom Montag\nZeit (s);Winkel (degrees)\n0,0;1,5\n0,1;1,6\n");
+  EXPECT_EQ(guess_columns(german)[0].channel, "t_s");
+  EXPECT_EQ(guess_columns(german)[1].channel, "angle_deg");
+}
+
 }  // namespace
 }  // namespace photorque
