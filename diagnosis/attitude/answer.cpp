@@ -121,12 +121,7 @@ double held_chi2_per_sample(const Trial& trial, const RecordedData& data,
 // or, if there is none, by the nominal model.
 void keep_predictive_explanation(const RecordedData& data, const Thresholds& limits, Answer& a) {
   if (data.held.empty()) return;
-  // Allows for the scatter of χ² of as many readings.
-  constexpr double by_chance = 3.0;
-  const auto samples =
-      static_cast<double>(propagate_model(a.trials.front().fit, data.held, limits).samples);
-  const double nominal = held_chi2_per_sample(a.trials.front(), data, limits) *
-                         (1.0 + by_chance * std::sqrt(2.0 / samples));
+  const double nominal = held_chi2_per_sample(a.trials.front(), data, limits);
   size_t kept = 0;
   if (held_chi2_per_sample(a.chosen(), data, limits) <= nominal) return;
   for (const size_t i : inference::by_evidence(a.trials)) {
