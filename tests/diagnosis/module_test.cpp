@@ -9,6 +9,7 @@
 
 #include "diagnosis/light/module/curve.h"
 #include "diagnosis/light/module/diagnose.h"
+#include "diagnosis/light/module/fit.h"
 #include "photovoltaics/cell/table.h"
 #include "photovoltaics/network/curve.h"
 #include "scenes/experiment/toml.h"
@@ -202,6 +203,40 @@ TEST(ModuleDiagnosis, NamesNothingInAWarmerModuleWhoseTemperatureIsHardlyKnown) 
         diagnose_module(design, {measured(module_curve({cells}, warm, state), 2)}, {});
     EXPECT_EQ(d.verdict, Verdict::consistent) << part << ": " << d.sentence;
   }
+}
+
+// SciPy fits of one diode to two strings of 1152 cells of one inverter. The stated temperature is
+// known to 5 K, so that another one within 2 K changes the minimum of χ² by less than one. Where it
+// equals that of the reference, a fit without free powers of the translation ends far above.
+TEST(ModuleFits, AreAsGoodFromAnyStatedTemperatureWithinItsError) {
+  constexpr int string = 1152;
+  const ModuleCell first{9.1109, 6.66e-9, 1.179, 6.569 / string, 1857.0 / string, 318.0},
+      other{9.1389, 4.36e-9, 1.142, 6.14 / string, 1723.0 / string, 318.0};
+  const auto recorded = [&](const ModuleCell& cell, unsigned seed) {
+    ModuleState state;
+    state.temperature_K = cell.temperature_K;
+    return measured(module_curve({string}, cell, state), seed);
+  };
+  ModuleDesign design;
+  design.cells = string;
+  design.references = {recorded(first, 1), recorded(first, 3)};
+  design.reference_temperature_K = 318.0;
+  design.reference_temperatures_K = {318.0, 318.0};
+  design.temperature_sigma_K = 5.0;
+  design.current_noise_A = 0.01;  // digit of the inverter
+  const ModuleNominal nominal = nominal_module(design);
+  const Thresholds limits;
+  const ModuleFitter fitter(design, nominal, limits);
+  const ModuleHypothesis nothing = module_hypotheses(design, nominal).front();
+  std::vector<double> chi2;
+  for (const double stated_K : {316.0, 318.0, 320.0}) {
+    ModuleRun run{module_sweep(recorded(other, 2), design, 150, nullptr)};
+    run.sweep.temperature_K = stated_K;
+    run.sweep.light = other.photocurrent_A / first.photocurrent_A;
+    run.sigma_A = point_sigma_A(nominal, run.sweep);
+    chi2.push_back(fitter.fit(nothing, {run}).fit.chi2);
+  }
+  EXPECT_NEAR(chi2[1], 0.5 * (chi2[0] + chi2[2]), 1.0) << chi2[0] << ' ' << chi2[2];
 }
 
 bool can_be(const FoundEffect& effect, const std::string& kind) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <iterator>
 
+#include "core/numerics/order.h"
 #include "core/parallel.h"
 #include "inference/held_out.h"
 #include "inference/whiteness.h"
@@ -335,6 +336,59 @@ class Pairs {
   ModuleAnswer& answer_;
 };
 
+// Refits hypothesis `i` from the solution `near`, to the training curves and to all curves, and
+// keeps the fits of lower χ². Returns whether it found a lower χ² of all curves.
+bool refit(const ModuleFitter& fitter, const std::vector<ModuleRun>& train,
+           const std::vector<ModuleRun>& everything, size_t i, const VectorXd& near,
+           ModuleAnswer& answer) {
+  const auto improves = [&](const std::vector<ModuleRun>& runs, ModuleTrial& old) {
+    ModuleTrial fit = fitter.fit(answer.hypotheses[i], runs, &near);
+    constexpr double least = 1e-3;
+    if (!(fit.fit.chi2 < old.fit.chi2 - least)) return false;
+    old = std::move(fit);
+    return true;
+  };
+  improves(train, answer.trials[i]);
+  return improves(everything, answer.joint[i]);
+}
+
+// Refits the models that a better one contains (the nominal one, and each effect of a pair) from
+// its solution. Without its effects the solution may be a lower minimum of theirs, and their excess
+// of χ² is the significance of the effects. The most likely explanations come first, until one
+// remains more likely than the nominal model.
+void refit_parts(const ModuleFitter& fitter, const std::vector<ModuleRun>& train,
+                 const std::vector<ModuleRun>& everything, int threads, const Thresholds& limits,
+                 ModuleAnswer& answer) {
+  const auto module = [](const ModuleTrial& trial) -> VectorXd {
+    return trial.shared.head(ModuleNominal::numbers);
+  };
+  bool is_lower = false;
+  for (const size_t i : sorted_indices(answer.joint.size(), [&](size_t a, size_t b) {
+         return answer.joint[a].log_evidence > answer.joint[b].log_evidence;
+       })) {
+    const ModuleTrial whole = answer.joint[i];
+    const auto odds = [&] { return whole.log_evidence - answer.joint.front().log_evidence; };
+    if (i == 0 || odds() < limits.decision.min_log_odds) break;
+    for (const auto& member : answer.hypotheses[i].members) {
+      VectorXd near(ModuleNominal::numbers + static_cast<Index>(member.at.size()));
+      near.head(ModuleNominal::numbers) = module(whole);
+      for (size_t k = 0; k < member.at.size(); ++k) {
+        near[ModuleNominal::numbers + static_cast<Index>(k)] =
+            whole.shared[ModuleNominal::numbers + static_cast<Index>(member.at[k])];
+      }
+      refit(fitter, train, everything, member.hypothesis, near, answer);
+    }
+    is_lower = refit(fitter, train, everything, 0, module(whole), answer) || is_lower;
+    if (odds() > limits.decision.min_log_odds) break;
+  }
+  if (!is_lower) return;
+  parallel_for(answer.joint.size() - 1, threads, [&](size_t i) {
+    VectorXd near = answer.joint[i + 1].shared;
+    near.head(ModuleNominal::numbers) = module(answer.joint.front());
+    refit(fitter, train, everything, i + 1, near, answer);
+  });
+}
+
 // Sets the prediction of the held-out data by each trial and the significance of its effects, and
 // decides.
 void decide_on(const ModuleFitter& fitter, const ModuleData& data, const Thresholds& limits,
@@ -442,6 +496,7 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
   if (leaves_more(answer.joint[best])) {
     Pairs(fitter, hypotheses, data.train, everything, threads, answer).fit();
   }
+  refit_parts(fitter, data.train, everything, threads, limits, answer);
   decide_on(fitter, data, limits, answer);
   return answer;
 }

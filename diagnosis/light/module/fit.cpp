@@ -93,7 +93,7 @@ double ModuleFitter::first_light(const ModuleHypothesis& h, const ModuleRun& run
 
 ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
                                    const std::vector<double>& own, const VectorXd* from,
-                                   const VectorXd* at) const {
+                                   const VectorXd* at, bool translates) const {
   inference::Parameters parameters;
   for (Index k = 0; k < of_module; ++k) {
     parameters.shared.push_back({"module", "", from ? (*from)[k] : 0.0, 0.0, 1.0, -10.0, 10.0});
@@ -109,25 +109,12 @@ ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<
     parameters.of_run.push_back({{"light", "ln", first, light, 1.0, light - 5.0, light + 5.0},
                                  {"temperature", "", 0.0, 0.0, 1.0, -20.0, 20.0}});
   }
-  // Near the condition of the reference, translation is not identifiable. A fitted temperature is
-  // only an estimate: it must differ by 5 K.
-  constexpr double no_distance = 0.02, no_fitted_distance = 0.2;
-  const auto distance = [&](const ModuleSweep& sweep, double temperature_K) {
-    return distance_of(nominal_, sweep.light, temperature_K);
-  };
-  const bool any_is_far = std::ranges::any_of(runs, [&](const ModuleRun& run) {
-    return distance(run.sweep, run.sweep.temperature_K) > no_distance;
-  });
   const inference::ResidualModel model(parameters, [&](const VectorXd& x, Index run, VectorXd& r,
                                                        MatrixXd* slopes) {
     const ModuleRun& of = runs[static_cast<size_t>(run)];
     r = residuals(h, x, of);
     if (slopes == nullptr) return;
     slopes->resize(r.size(), x.size());
-    const bool translates =
-        any_is_far ||
-        distance(of.sweep, acting(design_, nominal_, h, of.sweep, x).state.temperature_K) >
-            no_fitted_distance;
     for (Index k = 0; k < x.size(); ++k) {
       const Index shared = k - of_curve;
       if (!translates && shared >= of_cell && shared < of_module) {
@@ -156,18 +143,28 @@ ModuleTrial ModuleFitter::fit(const ModuleHypothesis& h, const std::vector<Modul
   std::vector<double> plain;
   for (const inference::Parameter& p : h.parameters) plain.push_back(p.value);
   std::vector<std::vector<double>> starts = h.starts;
-  if (starts.empty() || from != nullptr) starts = {plain};
-  // The starts are compared on a subset of the points.
-  const std::vector<ModuleRun> some = starts.size() > 1 ? thinned(runs) : runs;
+  if (starts.empty()) starts = {plain};
   ModuleTrial best;
-  for (const std::vector<double>& start : starts) {
-    ModuleTrial trial = fit_from(h, some, start, from);
-    if (!(trial.fit.chi2 < best.fit.chi2) && best.fit.at.size() > 0) continue;
-    best = std::move(trial);
-  }
-  if (starts.size() > 1) {
-    const VectorXd at = best.fit.at, shared = best.shared;
-    best = fit_from(h, runs, plain, &shared, &at);
+  if (from != nullptr) {
+    best = fit_from(h, runs, plain, from, nullptr, true);
+  } else {
+    // The starts are compared on a subset of the points. Near the condition of the reference the
+    // powers of the translation hardly act and mislead a fit far from its minimum: they are free
+    // in the last fit.
+    constexpr double near = 0.02;
+    const bool translates = std::ranges::any_of(runs, [&](const ModuleRun& run) {
+      return distance_of(nominal_, run.sweep.light, run.sweep.temperature_K) > near;
+    });
+    const std::vector<ModuleRun> some = starts.size() > 1 ? thinned(runs) : runs;
+    for (const std::vector<double>& start : starts) {
+      ModuleTrial trial = fit_from(h, some, start, nullptr, nullptr, translates);
+      if (!(trial.fit.chi2 < best.fit.chi2) && best.fit.at.size() > 0) continue;
+      best = std::move(trial);
+    }
+    if (starts.size() > 1 || !translates) {
+      const VectorXd at = best.fit.at, shared = best.shared;
+      best = fit_from(h, runs, plain, &shared, &at, true);
+    }
   }
   double evidence = inference::log_evidence(best.fit);
   if (!std::isfinite(evidence)) evidence = -1e300;

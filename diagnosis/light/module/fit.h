@@ -100,9 +100,10 @@ class ModuleFitter {
   double first_light(const ModuleHypothesis& h, const ModuleRun& run,
                      const inference::Parameters& parameters) const;
   // `from`: shared parameters, or nullptr for `own` and the nominal module; `at`: all parameters.
+  // `translates`: whether the powers of the translation are free.
   ModuleTrial fit_from(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
                        const std::vector<double>& own, const Eigen::VectorXd* from,
-                       const Eigen::VectorXd* at = nullptr) const;
+                       const Eigen::VectorXd* at, bool translates) const;
 
   const ModuleDesign& design_;
   const ModuleNominal& nominal_;
