@@ -14,7 +14,8 @@ import sys
 
 DATA = ("tests/data/", "tests/fuzz/corpus/", "tests/fuzz/seeds/", "images/browser/script/page.min.js")
 # Words of other languages, not texts.
-TABLES_OF_WORDS = ("diagnosis/guess/header.cpp", "diagnosis/guess/names.cpp", "photovoltaics/fit/curve_words.cpp")
+TABLES_OF_WORDS = ("diagnosis/guess/header.cpp", "diagnosis/guess/meanings.cpp",
+                   "diagnosis/guess/meanings.h", "diagnosis/guess/names.cpp", "photovoltaics/fit/curve_words.cpp")
 MARKS = {".h": "//", ".cpp": "//", ".js": "//"} | dict.fromkeys((".py", ".pyi", ".toml", ".cmake", ".sh", ".zsh"), "#")
 # A word of a text: letters that are not part of a name, path, key, call or unit.
 WORD = re.compile(r"(?<![\w/.\\%$@\-])[A-Za-z][a-z']+[a-z](?![\w/(\[=]|\.\w|::|->|'\w)")
