@@ -368,10 +368,14 @@ std::vector<std::string> contradicted_priors(const Trial& chosen,
 
 namespace {
 
-// "a, b (explanation)" of all named effects.
+// "a (explanation); b (explanation), or c or d, which these data do not distinguish from it" of all
+// named effects.
 std::string names_of(const Diagnosis& d) {
   return joined_text(d.effects, "; ", [](const FoundEffect& effect) {
-    return in_words(effect.kind) + " (" + effect.explanation + ")";
+    const std::string others = joined_text(effect.indistinguishable_from, " or ", in_words);
+    return in_words(effect.kind) + " (" + effect.explanation + ")" +
+           (others.empty() ? ""
+                           : ", or " + others + ", which these data do not distinguish from it");
   });
 }
 
