@@ -271,6 +271,15 @@ bool is_significant(const Explanation& trial, const Thresholds::Decision& limits
       trial.joint_significance.empty() ? trial.significance : trial.joint_significance, limits);
 }
 
+bool is_clear(const Explanation& trial, size_t candidate, const Thresholds::Decision& limits) {
+  const auto at = std::ranges::find(trial.candidates, candidate) - trial.candidates.begin();
+  const auto i = static_cast<size_t>(at);
+  if (i == trial.candidates.size()) return false;
+  const bool is_combination =
+      !trial.largest_component.empty() && trial.largest_component[i] < limits.min_component_sigma;
+  return is_significant({trial.significance[i]}, limits) && !is_combination;
+}
+
 Decision decide(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
                 const Checks& checks, const Thresholds::Decision& limits) {
   const Judge judge(trials, all, checks, limits);
@@ -301,6 +310,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     if (law_does) d.beside_law = judge.indispensable(empirical);
     // The empirical law is an approximation: several effects together may only absorb its residual.
     if (d.beside_law.size() > 1) d.beside_law.clear();
+    std::erase_if(d.beside_law, [&](size_t c) { return !is_clear(trials[empirical], c, limits); });
     d.confidence = probability_of(d.probability, [&](size_t i) { return judge.is_empirical(i); });
     if (structure_left || !predicts) {
       d.confidence = std::max(d.confidence, limits.structure_confidence);
@@ -317,6 +327,12 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     });
     const double nothing = d.probability.front() + rivals;
     d.confidence = nothing > 0.0 ? d.probability.front() / nothing : 1.0;
+    if (d.confidence < limits.min_probability_of_nothing) {
+      d.verdict = Verdict::unexplained;
+      d.because = "no explanation of the misfit predicts the held-out data";
+      d.leaves_more = true;
+      d.confidence = 1.0 - d.confidence;
+    }
     return d;
   }
   // Gate (a) of decide.h. Trials that contain the same names, in any parametrisation, count

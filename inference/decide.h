@@ -5,7 +5,8 @@
 //       within its error and only a combination is significant, no other explanation may be nearly
 //       as good;
 //   (c) segments that are left out of a fit are predicted better with it than without it;
-//   (d) with all names the held-out χ² agrees with its prediction; otherwise: unknown;
+//   (d) with all names the held-out χ² agrees with its prediction; otherwise: unknown. It is also
+//       unknown if no name passes although some are far more likely than nothing;
 //   (e) held-out data that the nominal model predicts as well do not test the names;
 //   (f) all places that explain the data equally well are listed.
 #pragma once
@@ -84,6 +85,10 @@ bool is_significant(const std::vector<double>& significance, const Thresholds::D
 
 // Gate (b) for a trial, on fitted and held-out data together where it has been fitted to both.
 bool is_significant(const Explanation& trial, const Thresholds::Decision& limits);
+
+// Whether the trial contains the candidate, and it differs from neutral by all its numbers together
+// and by one of them alone: the condition for a name beside an empirical law.
+bool is_clear(const Explanation& trial, size_t candidate, const Thresholds::Decision& limits);
 
 // Decides between the trials of a domain. Trial 0 is the nominal model. `all` are the candidates.
 // `excess_sigma` is called for the best named trial. The verdict "consistent" requires that

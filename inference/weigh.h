@@ -120,7 +120,8 @@ class Weighing {
   // Stores how well the trial predicts the held-out data.
   Trial predict_held(Trial& t) const {
     Trial held = domain_.predict(t, held_);
-    if (std::isfinite(held.fit.chi2)) t.holdout_chi2_per_sample = held.fit.chi2_per_sample();
+    t.holdout_chi2_per_sample =
+        std::isfinite(held.fit.chi2) ? held.fit.chi2_per_sample() : infinity;
     return held;
   }
 
@@ -166,9 +167,10 @@ class Weighing {
   }
 
   // Excess of the held-out χ² over the value that the parameter errors of the train fit predict
-  // [sigma]; 0 where unknown.
+  // [sigma]; infinite if the model cannot be propagated along the held-out data; 0 where unknown.
   double sigma_of_prediction(const Trial& train, const Trial& joint) const {
     if constexpr (std::derived_from<std::decay_t<decltype(train.fit)>, Fit>) {
+      if (train.holdout_chi2_per_sample == infinity) return infinity;
       if (train.holdout_chi2_per_sample) {
         return inference::held_out_sigma(train.fit, joint.fit, *train.holdout_chi2_per_sample,
                                          noise_of(train));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <ranges>
 
 #include "core/numerics/median.h"
 
@@ -54,6 +55,15 @@ Whiteness whiteness(const std::vector<ChannelResiduals>& runs, const Thresholds:
   result.slow_chi2_per_mean = sum / static_cast<double>(means);
   result.excess_sigma = (result.slow_chi2_per_mean - 1.0) / std::sqrt(variance);
   return result;
+}
+
+double size_excess_sigma(const std::vector<ChannelResiduals>& runs, double most) {
+  double chi2 = 0.0, count = 0.0;
+  for (const std::vector<double>& channel : runs | std::views::join) {
+    for (const double r : channel) chi2 += r * r;
+    count += static_cast<double>(channel.size());
+  }
+  return count > 0.0 ? (chi2 / count - most) / std::sqrt(2.0 / count) : 0.0;
 }
 
 std::vector<size_t> outliers(const std::vector<double>& residuals,

@@ -21,6 +21,10 @@ struct Whiteness {
 // Tests residuals of several runs with the same channels.
 Whiteness whiteness(const std::vector<ChannelResiduals>& runs, const Thresholds::Noise& limits);
 
+// Excess of the χ² per residual over `most` ≥ 1 [standard errors of white noise]. Structure as fast
+// as the readings raises it, but cancels in means of neighbours. 0 without residuals.
+double size_excess_sigma(const std::vector<ChannelResiduals>& runs, double most);
+
 // Indices of outliers of one channel: their deviation from the prediction by their neighbours is
 // large compared with the noise and with the typical deviation.
 std::vector<size_t> outliers(const std::vector<double>& residuals, const Thresholds::Noise& limits);

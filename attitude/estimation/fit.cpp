@@ -67,7 +67,8 @@ std::vector<inference::ChannelResiduals> channels_of(const std::vector<Predictio
 }
 
 double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
-                    const Thresholds::Noise& limits) {
+                    const Thresholds& thresholds) {
+  const Thresholds::Noise& limits = thresholds.noise;
   // In short runs, fitting the initial state removes the means over many neighbours. Their channels
   // are also tested with shorter means, so that each has at least this number.
   constexpr size_t fewest_means = 6;
@@ -79,8 +80,9 @@ double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
     }
     Thresholds::Noise scale = limits;
     scale.neighbours = std::clamp(longest / fewest_means, size_t{1}, limits.neighbours);
-    return std::max(inference::whiteness(channels, limits).excess_sigma,
-                    inference::whiteness(channels, scale).excess_sigma);
+    const double structure = std::max(inference::whiteness(channels, limits).excess_sigma,
+                                      inference::whiteness(channels, scale).excess_sigma);
+    return std::max(structure, inference::size_excess_sigma(channels, thresholds.held_out.max_noise));
   } catch (const NumericalError&) {
     return limits.excess_unknown;
   }

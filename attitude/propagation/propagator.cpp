@@ -186,7 +186,7 @@ void Propagator::take_step() {
   const bool is_free = dynamics_.model().disturbances.empty();
   const double settled = (is_free ? 1e-10 : 1e-6) * options_.tolerance;
   const double planned_s = stop_s;
-  int corrections = 0;
+  SlipEndSearch search;
   slip_ends_ = false;
   for (;;) {
     // Half of the remaining time rather than nearly all of it: this avoids very short steps.
@@ -220,7 +220,7 @@ void Propagator::take_step() {
       is_ceiling_of_state_ = false;
     } else if (contact_.exists() && !contact_.resolves(step_, held_)) {
       h_s_ = 0.5 * h_s;
-    } else if (contact_.exists() && ends_slip(stop_s, corrections)) {
+    } else if (contact_.exists() && ends_slip(stop_s, search)) {
       stop_s = std::min(stop_s, planned_s);
       --statistics_.steps;
       continue;
@@ -238,7 +238,7 @@ void Propagator::take_step() {
       return;
     }
     stop_s = planned_s;
-    corrections = 0;
+    search.corrections = 0;
     slip_ends_ = false;
     --statistics_.steps;
     ++statistics_.rejected;
@@ -319,29 +319,31 @@ void Propagator::cross_jumps() {
 
 // Whether the present slip ends inside the attempted step, before its end. Then `stop_s` becomes an
 // improved estimate of that time: first by locate(), then by Newton's method, until the time is
-// resolved.
-bool Propagator::ends_slip(double& stop_s, int& corrections) {
+// resolved. A correction that leaves the first attempted step is useless: it comes from a rate that
+// hardly changes at its zero.
+bool Propagator::ends_slip(double& stop_s, SlipEndSearch& search) {
   constexpr int most = 5;
   if (!slip_ends_) {
     const EventFunction beyond = {.name = "", .value = [&](const Lanes& time_s, const Lanes* y) {
                                     return contact_.beyond(time_s, held_, y);
                                   }};
+    search.latest_s = step_.start_s() + step_.length_s();
     const std::optional<DryContact::SlipEnd> within =
-        contact_.ends_within(step_, held_, step_.start_s() + step_.length_s());
+        contact_.ends_within(step_, held_, search.latest_s);
     if (!within) return false;
     slip_ends_ = true;
     stop_s = locate(beyond, within->low_s, within->high_s);
     return true;
   }
-  if (slip_ == Slip::sticks || ++corrections > most) return false;
+  if (slip_ == Slip::sticks || ++search.corrections > most) return false;
   const std::vector<double> end = step_.end();
   const size_t c = contact_.component();
   const double correction_s = -end[c] / contact_.rates(stop_s, held_, end)[c];
   const double resolved_s = 2e-16 * (std::abs(stop_s) + step_.length_s());
-  if (!(std::abs(correction_s) > resolved_s && stop_s + correction_s > step_.start_s())) {
-    return false;
-  }
-  stop_s += correction_s;
+  const double corrected_s = stop_s + correction_s;
+  const bool is_within = corrected_s > step_.start_s() && corrected_s <= search.latest_s;
+  if (!(std::abs(correction_s) > resolved_s && is_within)) return false;
+  stop_s = corrected_s;
   return true;
 }
 

@@ -125,6 +125,11 @@ class Propagator {
     int variable;  // index of the variable that is this time, −1 for none
     bool is_tick = false;
   };
+  // The time at which a slip ends, as it is improved by repeating a step.
+  struct SlipEndSearch {
+    double latest_s = 0.0;  // end of the first attempted step
+    int corrections = 0;
+  };
   void collect_jumps(double from_s);
   void take_command(double now_s, bool is_tick);
   void check_pace() const;
@@ -132,7 +137,7 @@ class Propagator {
   double propose_length(const CollocationStep::Outcome& outcome, double h_s, bool cut) const;
   void choose_method(const CollocationStep::Outcome& outcome, bool was_at_ceiling);
   void cross_jumps();
-  bool ends_slip(double& stop_s, int& corrections);
+  bool ends_slip(double& stop_s, SlipEndSearch& search);
   void cross_end_of_slip();
   void choose_slip(bool released);
   void take_over();

@@ -167,19 +167,15 @@ bool law_is_far_better(const Answer& a, const Thresholds& limits) {
 }
 
 // Describes the unexplained residual by a refined law in time. Effects named in addition to this
-// law are dropped if they are not significant in the refined fit.
+// law are dropped if they are not clear in the refined fit.
 void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& a) {
   if (a.decision.verdict != Verdict::unexplained) return;
   Trial& chosen = a.trials[a.decision.chosen];
   chosen = refined_in_time(chosen, a.all, data.train);
   keep_predictive_explanation(data, options.limits, a);
   const Trial& now = a.chosen();
-  std::erase_if(a.decision.beside_law, [&](size_t c) {
-    const auto at = std::ranges::find(now.candidates, c) - now.candidates.begin();
-    const auto i = static_cast<size_t>(at);
-    return i == now.candidates.size() ||
-           !inference::is_significant({now.significance[i]}, options.limits.decision);
-  });
+  std::erase_if(a.decision.beside_law,
+                [&](size_t c) { return !inference::is_clear(now, c, options.limits.decision); });
 }
 
 bool has_law(const Trial& trial, const Candidates& all) {

@@ -85,8 +85,12 @@ std::vector<double> CrossValidation::predicted(const Trial& trial,
   if (!std::isfinite(others.fit.chi2)) return {};
   std::vector<double> result;
   try {
-    const std::vector<double> of_whole =
-        whole.empty() ? std::vector<double>() : domain_.predict(others, whole).fit.run_chi2;
+    std::vector<double> of_whole;
+    if (!whole.empty()) {
+      const Fit on_whole = domain_.predict(others, whole).fit;
+      if (!std::isfinite(on_whole.chi2)) return {};
+      of_whole = on_whole.run_chi2;
+    }
     const std::vector<Prediction> residuals = residuals_of(others.fit, complete);
     for (size_t i = fold; i < segments_.size(); i += folds) {
       const Segment& s = segments_[i];

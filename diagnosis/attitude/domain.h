@@ -71,7 +71,7 @@ class AttitudeDomain {
   // conditions are omitted.
   Runs cut(const Runs& runs, size_t pieces) const;
   double excess_sigma(const Trial& trial, const Runs& runs) const {
-    return photorque::excess_sigma(trial.fit, runs, limits().noise);
+    return photorque::excess_sigma(trial.fit, runs, limits());
   }
 
  private:

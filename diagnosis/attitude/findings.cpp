@@ -368,10 +368,14 @@ std::vector<std::string> contradicted_priors(const Trial& chosen,
 
 namespace {
 
-// "a, b (explanation)" of all named effects.
+// "a (explanation); b (explanation), or c or d, which these data do not distinguish from it" of all
+// named effects.
 std::string names_of(const Diagnosis& d) {
   return joined_text(d.effects, "; ", [](const FoundEffect& effect) {
-    return in_words(effect.kind) + " (" + effect.explanation + ")";
+    const std::string others = joined_text(effect.indistinguishable_from, " or ", in_words);
+    return in_words(effect.kind) + " (" + effect.explanation + ")" +
+           (others.empty() ? ""
+                           : ", or " + others + ", which these data do not distinguish from it");
   });
 }
 
@@ -381,10 +385,14 @@ std::string mostly_explained(const Diagnosis& d) {
   if (d.holdout && d.holdout->chi2_per_sample_after > 0.0) {
     const double before = d.holdout->chi2_per_sample_before,
                  after = d.holdout->chi2_per_sample_after;
-    text += printed(
-        ". Held out, it leaves %.3g of the nominal model's residual (rms), %.3g times the "
-        "noise: the rest has no known cause",
-        std::sqrt(after / before), std::sqrt(after));
+    text += after < before
+                ? printed(
+                      ". Held out, it leaves %.3g of the nominal model's residual (rms), %.3g "
+                      "times the noise: the rest has no known cause",
+                      std::sqrt(after / before), std::sqrt(after))
+                : std::string(
+                      ". The held-out data do not show it: the nominal model predicts them "
+                      "as well");
   }
   return text + ".";
 }
@@ -414,8 +422,8 @@ std::string sentence_of(const Diagnosis& d) {
   const auto chosen = std::find_if(d.alternatives.begin(), d.alternatives.end(),
                                    [](const Alternative& a) { return a.chosen; });
   if (chosen == d.alternatives.end() || !(before > worth_saying * after)) return text + ".";
-  const std::string names =
-      chosen->label.empty() ? joined_text(chosen->kinds, " and ", in_words) : chosen->label;
+  const std::string names = chosen->label.empty() ? joined_text(chosen->kinds, " and ", in_words)
+                                                  : in_words(chosen->label);
   return text + ". Held out, " + names + " lowers χ² by a factor of " +
          printed("%.3g", before / after) +
          (after > 1.0 + leaves_something ? ", and leaves residuals above the noise." : ".");

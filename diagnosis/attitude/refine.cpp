@@ -260,7 +260,7 @@ bool is_formula_that_explains(const Trial& trial, const EmpiricalLaw& law,
                               const std::vector<Observation>& runs, const Thresholds& limits) {
   return law.shape.functions.front().form == FunctionForm::decay &&
          trial.fit.chi2_per_sample() < limits.held_out.max_noise &&
-         excess_sigma(trial.fit, runs, limits.noise) < limits.search.explained_sigma;
+         excess_sigma(trial.fit, runs, limits) < limits.search.explained_sigma;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace photorque::inference {
 namespace {
@@ -86,6 +87,21 @@ TEST(Decide, ANameThatPredictsWorseIsNotReported) {
   EXPECT_EQ(decided(trials, mutant).chosen, 2u);
 }
 
+// The name is certain and predicts nothing. That nothing is missing is as wrong as the name.
+TEST(Decide, AMisfitWhoseExplanationPredictsNothingIsUnexplained) {
+  std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0)};
+  trials[0].holdout_chi2_per_sample = 0.1;
+  trials[1].holdout_chi2_per_sample = std::numeric_limits<double>::infinity();
+  const Decision d = decided(trials);
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+  EXPECT_EQ(d.chosen, 0u);
+  EXPECT_GT(d.confidence, 0.99);
+  EXPECT_FALSE(d.because.empty());
+  Thresholds::Decision mutant;
+  mutant.min_probability_of_nothing = 0.0;
+  EXPECT_EQ(decided(trials, mutant).verdict, Verdict::consistent);
+}
+
 // The numbers of both names are known too poorly to predict: the held-out χ² grows as their errors
 // say. Or it grows by more, and a fit to all recordings agrees with the held-out ones only with
 // both.
@@ -143,7 +159,8 @@ TEST(Gates, ANameWithinItsErrorWithoutAnotherIsNotReported) {
   std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0),
                                      explanation({0, 1}, 102.0, 1.0)};
   trials[1].joint_significance = {3.9};
-  EXPECT_EQ(decided(trials).verdict, Verdict::consistent);
+  EXPECT_EQ(decided(trials).chosen, 0u);
+  EXPECT_EQ(decided(trials).verdict, Verdict::unexplained);
   Thresholds::Decision mutant;
   mutant.min_significance = 3.0;
   EXPECT_EQ(decided(trials, mutant).verdict, Verdict::missing_physics);
@@ -197,6 +214,10 @@ TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
   EXPECT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_EQ(d.chosen, 4u);
   EXPECT_EQ(d.beside_law, std::vector<size_t>{0});
+  // All its numbers are within their errors, so only a combination is known.
+  std::vector<Explanation> vague = trials;
+  vague.back().largest_component = {2.1, 9.0};
+  EXPECT_TRUE(decided(vague, limits, all).beside_law.empty());
   // The fit to the first recordings alone may predict the others worse than no law did.
   std::vector<Explanation> worse = trials;
   worse.front().holdout_chi2_per_sample = 20.0;

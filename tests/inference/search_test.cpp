@@ -189,6 +189,7 @@ TEST(Search, IsUnexplainedIfOnlyTheEmpiricalTermFits) {
   const Eigen::VectorXd signal = smooth(14).shape({grid(samples), {}, 1.0}, 0.0).col(4) * 25.0;
   Thresholds mutant;
   mutant.decision.min_log_odds = 1e9;
+  mutant.decision.min_probability_of_nothing = 0.0;
   mutant.decision.max_excess_sigma = mutant.decision.max_predictive_sigma = 1e9;
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const Recorded seen(signal, seed);

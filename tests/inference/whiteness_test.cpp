@@ -38,6 +38,19 @@ TEST(Whiteness, ExcessOfWhiteNoiseIsAStandardNormal) {
   EXPECT_NEAR(squares / seeds, 1.0, 4.0 * std::sqrt(2.5 / seeds));
 }
 
+// An oscillation at half the sampling rate cancels in means of neighbours: χ² per reading is
+// 1 + 1.5², above 1.15 by 2.1 of √(2/n).
+TEST(Whiteness, SizeShowsWhatIsAsFastAsTheReadings) {
+  constexpr size_t count = 2000;
+  std::vector<double> r = white(3, count);
+  EXPECT_LT(size_excess_sigma({{r}}, 1.15), 0.0);
+  for (size_t i = 0; i < count; ++i) r[i] += i % 2 == 0 ? 1.5 : -1.5;
+  EXPECT_LT(whiteness({{r}}, {}).excess_sigma, 4.0);
+  const double expected = 2.1 / std::sqrt(2.0 / count);
+  // Standard error of a non-central χ²: √((2 + 4 · 1.5²)/n) over √(2/n).
+  EXPECT_NEAR(size_excess_sigma({{r}}, 1.15), expected, 4.0 * std::sqrt(5.5));
+}
+
 TEST(Whiteness, OutliersDifferFromLocalPredictions) {
   std::vector<double> r = white(5, 500);
   // A residual that runs away steadily is none, however large.

@@ -114,9 +114,9 @@ std::string head(const Diagnosis& d, const std::string& title) {
               tag("p", xml_text(d.sentence), "verdict-sentence"),
           std::string("verdict ") + face.css);
   if (!d.because.empty()) content += tag("p", "Why unexplained: " + xml_text(d.because) + ".");
-  for (const std::string& warning : d.warnings) {
-    content += tag("p", "<b>Check first:</b> " + xml_text(warning), "warning");
-  }
+  std::string notes;
+  for (const std::string& warning : d.warnings) notes += tag("li", xml_text(warning));
+  if (!notes.empty()) content += tag("div", "<b>Notes</b>" + tag("ul", notes), "warning");
   return tag("header", content + cards(d));
 }
 

@@ -6,6 +6,9 @@ namespace {
 
 constexpr VectorKey scale("scale", "three fractions: 0.01 reads 1 % too much");
 
+// A gyro that is farther off is not calibrated at all.
+constexpr double largest = 0.5;
+
 // reading − ω = s_i ω_i on each axis.
 struct GyroScale final : LawOf<GyroScale> {
   template <class T>
@@ -25,7 +28,7 @@ DisturbanceKind kind() {
       .read = read_law<GyroScale, Stage::measurement, scale>,
       .screening = {.parametrisations =
                         {{"the gyro's axes read too much or too little in proportion to the rate",
-                          {EffectKey::vector(scale.name, 0.02)}}}},
+                          {{scale.name, {0.0, 0.0, 0.0}, 0.02, -largest, largest}}}}},
       .budget = {.reason_against = "an error of an instrument: no torque"},
       .instrument = "gyro",
       .keys = {scale}};

@@ -26,7 +26,7 @@ DisturbanceKind kind() {
           .summary = "a spring or cable pulls a sliding body back to one place",
           .read = read_law<SlidingSpring, Stage::torque, stiffness, pull>,
           .screening = {.parametrisations = {{"a spring or cable pulls a sliding body back to one "
-                                              "place",
+                                              "place, or a constant force changes along the way",
                                               {EffectKey::not_negative(stiffness.name, 1e-2),
                                                {pull.name, {0.0, 0.0}, 1e-2}}}},
                         .needs = Requirement::plane,

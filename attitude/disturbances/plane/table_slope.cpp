@@ -23,8 +23,9 @@ DisturbanceKind kind() {
   return {.name = "table_slope",
           .summary = "the table is not level: a constant acceleration",
           .read = read_law<TableSlope, Stage::torque, slope>,
-          .screening = {.parametrisations = {{"the table is not level, or a steady draught or "
-                                              "another constant force acts, which looks the same",
+          .screening = {.parametrisations = {{"a constant acceleration, the slope times gravity: "
+                                              "the table is not level, or another constant force "
+                                              "acts",
                                               {{slope.name, {0.0, 0.0}, 1e-3}}}},
                         .needs = Requirement::plane,
                         .steady = true},

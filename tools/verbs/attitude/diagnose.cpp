@@ -10,6 +10,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
@@ -381,7 +382,9 @@ void add_options(Command& command, Options& options) {
 void print_diagnosis(const Console& console, const Diagnosis& d) {
   console.line(d.sentence);
   for (const FoundEffect& effect : d.effects) {
-    console.line("  " + effect.kind + ", probability " + show(effect.probability));
+    const std::string others = joined_text(effect.indistinguishable_from, " or ");
+    console.line("  " + effect.kind + (others.empty() ? "" : " or " + others) + ", probability " +
+                 show(effect.probability));
     for (const FittedParameter& p : effect.parameters) {
       std::string text = "    " + p.key + " ";
       for (size_t i = 0; i < p.value.size(); ++i) {
@@ -394,9 +397,6 @@ void print_diagnosis(const Console& console, const Diagnosis& d) {
       console.line("    only this combination is identifiable: " + text);
     }
     for (const auto& [key, words] : effect.texts) console.line("    " + key + " = " + words);
-    for (const std::string& rival : effect.indistinguishable_from) {
-      console.line("    indistinguishable in these data: " + rival);
-    }
   }
   console.line("  chi² per sample " + show(d.chi2_per_sample_before) + " before, " +
                show(d.chi2_per_sample_after) + " after");
