@@ -34,6 +34,17 @@ struct SettingsNode {
   }
 };
 
+// Calls `visit` with the node and with every node below it, each before those below itself.
+template <class Node, class Visit>
+void for_each_node(Node& node, const Visit& visit) {
+  visit(node);
+  if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
+    for (auto& [key, item] : *table) for_each_node(item, visit);
+  } else if (auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (auto& item : *items) for_each_node(item, visit);
+  }
+}
+
 // A short description for error messages: "-3", "\"abc\"", "an array of 2".
 std::string describe(const SettingsNode& node);
 

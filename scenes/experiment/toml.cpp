@@ -167,13 +167,8 @@ SettingsNode value_of(const std::string& text, const std::string& key) {
   return node;
 }
 
-void locate_on_command_line(SettingsNode& node) {
-  node.where = command_line;
-  if (auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (auto& item : *array) locate_on_command_line(item);
-  } else if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
-    for (auto& [key, item] : *table) locate_on_command_line(item);
-  }
+void locate_on_command_line(SettingsNode& root) {
+  for_each_node(root, [](SettingsNode& node) { node.where = command_line; });
 }
 
 // The item to which one step leads; creates a new key of a table.
