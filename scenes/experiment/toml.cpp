@@ -6,7 +6,6 @@
 #include <charconv>
 #include <sstream>
 
-#include "core/files.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -278,11 +277,6 @@ std::vector<TomlComment> toml_comments(const std::string& text) {
     has_value = has_value || std::string_view(" \t\r\n#").find(c) == std::string_view::npos;
   });
   return comments;
-}
-
-SettingsNode read_toml(const std::filesystem::path& path) {
-  constexpr uint64_t largest_bytes = 1ull << 26;
-  return parse_toml(read_file(path, largest_bytes), path.string());
 }
 
 void apply_override(SettingsNode& root, const std::string& assignment) {

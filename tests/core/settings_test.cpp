@@ -17,8 +17,7 @@ SettingsNode leaf(
 }
 
 Settings lab(SettingsNode::Table table) {
-  return Settings(
-      std::make_shared<const SettingsNode>(SettingsNode{std::move(table), {"lab.toml", 1}}));
+  return Settings(SettingsNode{std::move(table), {"lab.toml", 1}});
 }
 
 TEST(Units, EveryKeyOfAQuantityGivesSI) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/constants.h"
-#include "core/settings/settings.h"
 #include "raytrace/receiver.h"
 #include "raytrace/scene.h"
 
@@ -156,28 +155,6 @@ inline BinSums sums_of(const Receiver& receiver, const std::vector<std::vector<H
     }
   }
   return sums;
-}
-
-inline SettingsNode node_of(double x) {
-  return {x, {"test.toml", 7}};
-}
-inline SettingsNode node_of(const std::string& text) {
-  return {text, {"test.toml", 7}};
-}
-inline SettingsNode node_of(const char* text) {
-  return node_of(std::string(text));
-}
-inline SettingsNode node_of(const std::vector<double>& numbers) {
-  SettingsNode::Array array;
-  for (const double x : numbers) array.push_back(node_of(x));
-  return {std::move(array), {"test.toml", 7}};
-}
-
-inline Settings settings_of(const std::vector<std::pair<std::string, SettingsNode>>& keys) {
-  SettingsNode root;
-  root.where = {"test.toml", 6};
-  for (const auto& [key, node] : keys) std::get<SettingsNode::Table>(root.value)[key] = node;
-  return Settings(std::make_shared<const SettingsNode>(root), "receiver[0]");
 }
 
 inline const Map& map_named(const Product& product, const std::string& name) {

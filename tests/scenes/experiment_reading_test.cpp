@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "core/constants.h"
 #include "scenes/experiment/experiment.h"

@@ -1,6 +1,5 @@
 // The command sweep as a user meets it.
 #include <cmath>
-#include <filesystem>
 
 #include "tests/tools/sweep_test.h"
 

@@ -55,7 +55,7 @@ std::vector<Beam> lamps(int count) {
                                        {"wavelength_nm", {730.0, {}}},
                                        {"position_m", node_of(at)},
                                        {"aim_m", node_of(Vec3(0.5 * at.x(), 0.5 * at.y(), 0))}};
-    const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{table, {}}));
+    const Settings settings(SettingsNode{table, {}});
     for (Beam& beam : led->make(settings, {})) beams.push_back(std::move(beam));
   }
   return beams;

@@ -36,7 +36,7 @@ SettingsNode vector(const Vec3& v) {
 }
 
 std::vector<Beam> lamp(SettingsNode::Table table) {
-  const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{std::move(table), {}}));
+  const Settings settings(SettingsNode{std::move(table), {}});
   for (const SourceKind& kind : all_source_kinds()) {
     if (kind.name == "led") return kind.make(settings, {});
   }
@@ -170,9 +170,9 @@ Case one_mirror(bool whole_disc) {
   add_part(one.scene, std::move(receiver), "receiver");
   one.scene.instances.back().front_surface = 2;
   one.scene.instances.back().back_surface = 1;
-  const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{
+  const Settings settings(SettingsNode{
       SettingsNode::Table{{"direction", vector(Vec3(0, 0, -1))}, {"irradiance_W_m2", number(1000)}},
-      {}}));
+      {}});
   for (const SourceKind& kind : all_source_kinds()) {
     if (kind.name != "sun") continue;
     one.beams = kind.make(settings, {.scene_radius_m = one.scene.radius_m(), .notice = {}});

@@ -4,8 +4,6 @@
 //
 // The table is per pascal of dynamic pressure; speed ratio, accommodation and temperatures are
 // those of its gas flow. The mean atmosphere is attitude/environment/thermosphere.h.
-#include <functional>
-#include <memory>
 
 #include "attitude/disturbances/fields/torque_surface.h"
 #include "attitude/disturbances/kind.h"
