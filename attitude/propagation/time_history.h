@@ -9,6 +9,9 @@
 
 namespace photorque {
 
+// Magnitudes of the torque of a disturbance in the rows of the table "time_history".
+std::vector<double> torque_sizes(const Table& history, const std::string& label);
+
 class TimeHistory {
  public:
   explicit TimeHistory(const Dynamics& dynamics);
@@ -18,8 +21,8 @@ class TimeHistory {
 
   // Tables "time_history" and "events". Plots "tilt", "yaw", "rates", "charge" and "array_power"
   // (if they are not zero), "torque_fractions" and "torques" (magnitudes of all torques), and one
-  // for each disturbance. Curves are thinned to about 1600 points that keep every extreme. The
-  // largest tilt is taken from all `states` of the run, not only from the rows of this history.
+  // for each disturbance. The largest tilt is taken from all `states` of the run, not only from the
+  // rows of this history.
   Product product(const std::vector<PlatformState>& states, const std::vector<Event>& events,
                   const Propagator::Statistics& statistics) const;
 

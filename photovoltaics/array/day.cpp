@@ -190,10 +190,9 @@ Product day_product(const DayResult& day) {
                              {"array_power_W", day.array_W, {}},
                              {"battery_charge_J", day.charge_J, {}}}});
   Plot plot{"day_history", "Array and battery over time", "time [h]", "array [W]"};
-  plot.curves.push_back({"array power", hours, day.array_W, {}, false});
-  plot.below.push_back(
-      {"cells [K]", {{"cell temperature", hours, day.temperature_K, {}, false}}, false});
-  plot.below.push_back({"battery [Wh]", {{"charge", hours, charge_Wh, {}, false}}, false});
+  plot.curves.push_back({"array power", hours, day.array_W});
+  plot.below.push_back({"cells [K]", {{"cell temperature", hours, day.temperature_K}}});
+  plot.below.push_back({"battery [Wh]", {{"charge", hours, charge_Wh}}});
   product.plots.push_back(plot);
   return product;
 }

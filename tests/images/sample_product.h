@@ -40,7 +40,7 @@ inline Plot sample_plot() {
   plot.y_label = "current [A]";
   plot.curves = {{"traced", {0.0, 1.0, 2.0}, {1.2, 1.1, 0.2}, {0.1, 0.1, 0.1}, false},
                  {"measured", {0.5, 1.5}, {1.15, 0.9}, {0.05, 0.05}, true}};
-  plot.below = {{"power [W]", {{"", {0.0, 1.0, 2.0}, {0.0, 1.1, 0.4}, {}, false}}, false}};
+  plot.below = {{"power [W]", {{"", {0.0, 1.0, 2.0}, {0.0, 1.1, 0.4}}}}};
   return plot;
 }
 
