@@ -14,17 +14,8 @@
 namespace photorque {
 namespace {
 
+using fixtures::append;
 using fixtures::plate;
-
-// Appends a mesh with separate vertices.
-void join(Mesh& all, const Mesh& more) {
-  const auto first = static_cast<uint32_t>(all.vertices_m.size());
-  all.vertices_m.insert(all.vertices_m.end(), more.vertices_m.begin(), more.vertices_m.end());
-  all.uv.insert(all.uv.end(), more.uv.begin(), more.uv.end());
-  for (const auto& t : more.triangles) {
-    all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
-}
 
 // Two triangles without a common index, as exporters without indices write a rectangle.
 Mesh loose_plate(double x0, double x1, double y0, double y1) {
@@ -47,8 +38,8 @@ constexpr double side_m = 0.09, pitch_m = 0.1;
 Mesh six_squares() {
   Mesh all;
   for (const auto& [column, row] : {std::pair{2, 1}, {0, 0}, {1, 1}, {2, 0}, {0, 1}, {1, 0}}) {
-    join(all, loose_plate(column * pitch_m, column * pitch_m + side_m, row * pitch_m,
-                          row * pitch_m + side_m));
+    append(all, loose_plate(column * pitch_m, column * pitch_m + side_m, row * pitch_m,
+                            row * pitch_m + side_m));
   }
   return all;
 }
@@ -137,18 +128,18 @@ TEST(CellPlaces, InstancesAreCellsAlsoWhenTheyTouch) {
   EXPECT_EQ(places_from_mesh(scene, grid).parts.size(), 3u);
   // Squares of one mesh that share an edge are one cell.
   Mesh touching;
-  join(touching, loose_plate(0, 0.1, 0, 0.1));
-  join(touching, loose_plate(0.1, 0.2, 0, 0.1));
+  append(touching, loose_plate(0, 0.1, 0, 0.1));
+  append(touching, loose_plate(0.1, 0.2, 0, 0.1));
   const Scene joined = fixtures::scene_of(touching);
   EXPECT_EQ(places_from_mesh(joined, grid_over(joined)).parts.size(), 1u);
 }
 
 TEST(CellPlaces, CellsOutOfLineStandInOneRow) {
   Mesh all;
-  join(all, plate(0, 1, 0, 1));
-  join(all, plate(2, 3, 0.5, 1.5));
-  join(all, plate(0, 1, 2, 3));
-  join(all, plate(2, 3, 2, 3));
+  append(all, plate(0, 1, 0, 1));
+  append(all, plate(2, 3, 0.5, 1.5));
+  append(all, plate(0, 1, 2, 3));
+  append(all, plate(2, 3, 2, 3));
   const Scene scene = fixtures::scene_of(all);
   const CellPlaces places = places_from_mesh(scene, grid_over(scene));
   EXPECT_EQ(places.columns, 4);

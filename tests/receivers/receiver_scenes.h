@@ -23,6 +23,16 @@ inline Mesh plate(double x0, double x1, double y0, double y1, double z = 0.0) {
   return mesh;
 }
 
+// Adds a mesh with separate vertices.
+inline void append(Mesh& all, const Mesh& more) {
+  const auto first = static_cast<uint32_t>(all.vertices_m.size());
+  all.vertices_m.insert(all.vertices_m.end(), more.vertices_m.begin(), more.vertices_m.end());
+  all.uv.insert(all.uv.end(), more.uv.begin(), more.uv.end());
+  for (const auto& t : more.triangles) {
+    all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+}
+
 // The polygon with corners on the circle of radius 1, first corner on +x, front up.
 inline Mesh polygon(uint32_t corners) {
   Mesh mesh;
