@@ -112,6 +112,14 @@ std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
 
 }  // namespace
 
+Table event_table(const std::vector<Event>& events) {
+  Table table = Table::of("events", "What happened");
+  for (const Event& event : events) {
+    table.row().set("event", event.name).set("t_s", event.time_s);
+  }
+  return table;
+}
+
 std::vector<double> torque_sizes(const Table& history, const std::string& label) {
   const auto along = [&](const char* end) -> const std::vector<double>& {
     return history.column("torque_" + label + end).values;
@@ -189,11 +197,7 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
   };
   const std::vector<double>& t = values("t_s");
   product.tables.push_back(table_);
-  Table happened = Table::of("events", "What happened");
-  for (const Event& event : events) {
-    happened.row().set("event", event.name).set("t_s", event.time_s);
-  }
-  if (!events.empty()) product.tables.push_back(happened);
+  if (!events.empty()) product.tables.push_back(event_table(events));
 
   const auto add_plot = [&](const std::string& name, const std::string& title, const std::string& y,
                             std::vector<Plot::Curve> curves) {

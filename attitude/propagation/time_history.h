@@ -9,6 +9,9 @@
 
 namespace photorque {
 
+// The table "events".
+Table event_table(const std::vector<Event>& events);
+
 // Magnitudes of the torque of a disturbance in the rows of the table "time_history".
 std::vector<double> torque_sizes(const Table& history, const std::string& label);
 
