@@ -6,6 +6,7 @@
 
 #include "attitude/model/platform.h"
 #include "core/constants.h"
+#include "core/numerics/extremes.h"
 #include "core/numerics/order.h"
 #include "core/snapshot.h"
 
@@ -112,6 +113,16 @@ std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
 
 }  // namespace
 
+Plot::Curve thinned_curve(const std::vector<double>& x, const std::vector<double>& y) {
+  constexpr size_t most = 1600;
+  Plot::Curve curve;
+  for (const size_t i : lows_and_highs(y, most)) {
+    curve.x.push_back(x[i]);
+    curve.y.push_back(y[i]);
+  }
+  return curve;
+}
+
 Table event_table(const std::vector<Event>& events) {
   Table table = Table::of("events", "What happened");
   for (const Event& event : events) {
@@ -203,7 +214,7 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
                             std::vector<Plot::Curve> curves) {
     product.plots.push_back({name, title, "time [s]", y, std::move(curves)});
   };
-  const auto line = [&](const std::vector<double>& y) { return Plot::Curve{"", t, y}; };
+  const auto line = [&](const std::vector<double>& y) { return thinned_curve(t, y); };
   // Oscillating curves of long runs would hide each other, so every axis has a separate panel.
   const auto add_vector_plot = [&](const std::string& name, const std::string& title,
                                    const std::string& unit, const auto& along) {

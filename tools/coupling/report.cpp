@@ -39,27 +39,26 @@ std::vector<EnergyRow> energy_rows(const CoupledRun& run) {
   return rows;
 }
 
-Plot::Curve curve(const std::string& label, const std::vector<double>& x,
-                  const std::vector<double>& y) {
-  return {.label = label, .x = x, .y = y, .width = 1.2};
-}
-
 Plot together(const Table& power, const Table& history) {
   const std::vector<double>& t = power.column("t_s").values;
   const std::vector<double>& moved = history.column("t_s").values;
   Plot plot{"power_and_attitude", "Power, charge, attitude and torque", "time [s]", "power [W]"};
-  Plot::Curve load = curve("load served", t, power.column("load_power_W").values);
-  load.colour = Plot::Colour::grey;
-  plot.curves = {load, curve("array", t, power.column("array_power_W").values)};
-  if (power.find("battery_charge_Wh") != nullptr) {
-    plot.below.push_back(
-        {"battery [Wh]", {curve("", t, power.column("battery_charge_Wh").values)}});
+  plot.curves = {thinned_curve(t, power.column("load_power_W").values),
+                 thinned_curve(t, power.column("array_power_W").values)};
+  plot.curves[0].label = "load served";
+  plot.curves[0].colour = Plot::Colour::grey;
+  plot.curves[1].label = "array";
+  const auto add = [&](const char* label, const std::vector<double>& x,
+                       const std::vector<double>& y) {
+    plot.below.push_back({label, {thinned_curve(x, y)}});
+  };
+  if (const Table::Column* charge = power.find("battery_charge_Wh")) {
+    add("battery [Wh]", t, charge->values);
   }
-  plot.below.push_back({"cells [K]", {curve("", t, power.column("cell_temperature_K").values)}});
-  plot.below.push_back({"tilt [deg]", {curve("", moved, history.column("tilt_deg").values)}});
+  add("cells [K]", t, power.column("cell_temperature_K").values);
+  add("tilt [deg]", moved, history.column("tilt_deg").values);
   if (history.find("torque_radiation_pressure_x_N_m") != nullptr) {
-    plot.below.push_back(
-        {"light [N m]", {curve("", moved, torque_sizes(history, "radiation_pressure"))}});
+    add("light [N m]", moved, torque_sizes(history, "radiation_pressure"));
   }
   return plot;
 }
