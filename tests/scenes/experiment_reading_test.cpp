@@ -10,7 +10,6 @@
 namespace photorque {
 namespace {
 
-using testing::AnyOf;
 using testing::Contains;
 using testing::Pair;
 

@@ -7,7 +7,6 @@ namespace photorque {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 class CommandLine : public CommandTest {};
 
