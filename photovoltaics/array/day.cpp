@@ -96,9 +96,7 @@ Battery::Step Battery::step(double charge_J, double surplus_W, double step_s) co
 }
 
 double LampDroop::light_at(double time_s) const {
-  const double faded = depth * -std::expm1(-time_s / time_constant_s);
-  const double warmth_K = rise_K * -std::expm1(-time_s / rise_time_constant_s);
-  return (1.0 - faded) * (1.0 - roll_off_1_K * warmth_K);
+  return light(-std::expm1(-time_s / time_constant_s), -std::expm1(-time_s / rise_time_constant_s));
 }
 
 DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const DaySettings& s) {
