@@ -216,7 +216,7 @@ std::optional<CadConventions> read_cad_conventions(const Settings& scene,
 
 std::vector<Settings> ExperimentFile::others(const std::string& key) const {
   if (!settings.has(key)) return {};
-  // A root of their own: whoever reads the tables checks that all of their keys are known.
+  // A separate root, because the reader checks that all keys of these tables are known.
   return Settings(SettingsNode{SettingsNode::Table{{key, settings.raw(key)}}}).tables(key);
 }
 
