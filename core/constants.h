@@ -34,6 +34,14 @@ inline constexpr double largest_distance_m = 1e12;
 inline constexpr double degree_rad = pi / 180.0;
 inline constexpr double arcsecond_rad = degree_rad / 3600.0;
 
+// Annealed copper at 20 °C: density (ASM Handbook vol. 2), resistivity (International Annealed
+// Copper Standard, IEC 60028).
+inline constexpr double copper_density_kg_m3 = 8960.0;
+inline constexpr double copper_resistivity_ohm_m = 1.7241e-8;
+
+// The Earth's ellipsoid WGS 84.
+inline constexpr double earth_equatorial_radius_m = 6378137.0;
+inline constexpr double earth_flattening = 1.0 / 298.257223563;
 // Reference radius of the geomagnetic field model IGRF. Altitudes of orbits count from it.
 inline constexpr double reference_radius_of_earth_m = 6371.2e3;
 

@@ -37,8 +37,8 @@ struct Map {
   double x_low = 0, x_high = 1, y_low = 0, y_high = 1;  // outer edges of the grid
   std::string x_label = "x [m]", y_label = "y [m]";
   bool signed_values = false;  // draw with a diverging colour map centred on zero
-  std::vector<double> value;
-  std::vector<double> standard_error;
+  std::vector<double> value = {};
+  std::vector<double> standard_error = {};
   bool equal_scale = true;  // x and y have the same unit and are drawn to the same scale
   // Values are those of a smooth field at the middles of the bins. The map is then drawn
   // interpolated, with contour lines.
@@ -105,8 +105,8 @@ struct Plot {
   // Colour of a curve: the next one of the palette, or one with the same meaning on a whole page.
   enum class Colour { in_order, blue, vermilion, green, grey };
   struct Curve {
-    std::string label;
-    std::vector<double> x, y;
+    std::string label = {};
+    std::vector<double> x = {}, y = {};
     std::vector<double> y_error = {};  // one standard error; empty: none drawn
     bool markers = false;              // points instead of a line
     bool bars = false;                 // bars 0.8 wide from zero instead; no errors drawn
@@ -119,7 +119,7 @@ struct Plot {
   bool x_log = false, y_log = false;
   struct Panel {
     std::string y_label;
-    std::vector<Curve> curves;
+    std::vector<Curve> curves = {};
     bool y_log = false;
     std::vector<double> levels = {};  // dotted horizontal lines at these y
     // The y axis fits the central 99.6 % of the values, so that one outlier does not flatten the

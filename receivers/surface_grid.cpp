@@ -329,16 +329,8 @@ std::string plane_label(const Vec3& axis_body, const std::string& otherwise) {
 
 Map grid_map(const SurfaceGrid& grid, const std::vector<Estimate>& bins, const std::string& name,
              const std::string& title, const std::string& unit) {
-  Map map;
-  map.name = name;
-  map.title = title;
-  map.unit = unit;
-  map.width = grid.width;
-  map.height = grid.height;
-  map.x_low = grid.u_low;
-  map.x_high = grid.u_high;
-  map.y_low = grid.v_low;
-  map.y_high = grid.v_high;
+  Map map{name,       title,       unit,       grid.width, grid.height,
+          grid.u_low, grid.u_high, grid.v_low, grid.v_high};
   const bool plane = grid.over == SurfaceGrid::Over::plane;
   map.x_label = plane ? plane_label(grid.u_axis_body, "u [m]") : "texture u";
   map.y_label = plane ? plane_label(grid.v_axis_body, "v [m]") : "texture v";

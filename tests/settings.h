@@ -22,19 +22,10 @@ inline SettingsNode vector_node(double x, double y, double z) {
   return numbers_node({x, y, z});
 }
 
-inline void set_location(SettingsNode& node, const InputLocation& where) {
-  node.where = where;
-  if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
-    for (auto& [key, inner] : *table) set_location(inner, where);
-  } else if (auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (SettingsNode& inner : *array) set_location(inner, where);
-  }
-}
-
 // As if read from line 7 of test.toml.
 inline Settings settings_of(SettingsNode::Table table, const std::string& name = "source[0]") {
   SettingsNode root{std::move(table)};
-  set_location(root, {"test.toml", 7});
+  for_each_node(root, [](SettingsNode& node) { node.where = {"test.toml", 7}; });
   return Settings(std::make_shared<SettingsNode>(std::move(root)), name);
 }
 

@@ -97,17 +97,18 @@ Pair worst_with_one_dark(const CameraStudy& study, double tilt_rad) {
 }
 
 Table marker_table(const TrackingCamera& camera) {
-  Table table = Table::of("markers", "Markers in the image at zero tilt",
-                          {"x_m", "y_m", "z_m", "column_px", "row_px", "electrons",
-                           "brightest_pixel_electrons", "centre_error_px"});
+  Table table = Table::of("markers", "Markers in the image at zero tilt");
   for (size_t i = 0; i < camera.markers.size(); ++i) {
     const auto view = view_of(camera, i, {});
     const Vec3& place_m = camera.markers[i].position_body_m;
-    Table::Row row = table.row();
-    row.set("x_m", place_m.x()).set("y_m", place_m.y()).set("z_m", place_m.z());
     const Spot spot = view ? spot_of(camera, *view) : Spot{{unseen, unseen}, unseen};
-    row.set("column_px", spot.centre_px.x()).set("row_px", spot.centre_px.y());
-    row.set("electrons", spot.electrons)
+    table.row()
+        .set("x_m", place_m.x())
+        .set("y_m", place_m.y())
+        .set("z_m", place_m.z())
+        .set("column_px", spot.centre_px.x())
+        .set("row_px", spot.centre_px.y())
+        .set("electrons", spot.electrons)
         .set("brightest_pixel_electrons", view ? brightest_pixel(spot) : unseen)
         .set("centre_error_px",
              view ? std::sqrt(0.5 * centre_covariance_px2(spot, pixel_noise(camera)).trace())
@@ -125,13 +126,8 @@ std::vector<double> tilts_of(const CameraStudy& study) {
 Table degradation_table(const CameraStudy& study) {
   const char* cases[] = {"all",    "one_dark",   "calibration", "principal_point",
                          "radial", "tangential", "free"};
-  std::vector<std::string> names = {"tilt_deg"};
-  for (const char* one : cases) {
-    names.push_back(std::string(one) + "_in_plane_arcsec");
-    names.push_back(std::string(one) + "_out_of_plane_arcsec");
-  }
-  Table table = Table::of("degradation",
-                          "Attitude error of one image, the worst heading of each tilt", names);
+  Table table =
+      Table::of("degradation", "Attitude error of one image, the worst heading of each tilt");
   TrackingCamera free = study.camera, bound = study.camera;
   free.knows_centre = false;
   bound.knows_centre = true;
@@ -172,15 +168,10 @@ Table degradation_table(const CameraStudy& study) {
 }
 
 Plot error_plot(const CameraStudy& study, const Table& degradation) {
-  Plot plot;
-  plot.name = "error_over_tilt";
-  plot.title = "Attitude error of one image, worst heading";
-  plot.x_label = "tilt [deg]";
-  plot.y_label = "in plane [arcsec]";
+  Plot plot{"error_over_tilt", "Attitude error of one image, worst heading", "tilt [deg]",
+            "in plane [arcsec]"};
   plot.y_log = true;
-  Plot::Panel below;
-  below.y_label = "out of plane [arcsec]";
-  below.y_log = true;
+  Plot::Panel below{"out of plane [arcsec]", {}, true};
   const std::pair<const char*, std::string> curves[] = {
       {"all", "all markers"},
       {"one_dark", "without the most important marker"},
@@ -190,10 +181,7 @@ Plot error_plot(const CameraStudy& study, const Table& degradation) {
   const std::vector<double>& tilt = degradation.column("tilt_deg").values;
   for (const auto& [name, label] : curves) {
     const std::string stem = name;
-    Plot::Curve curve;
-    curve.label = label;
-    curve.x = tilt;
-    curve.y = degradation.column(stem + "_in_plane_arcsec").values;
+    Plot::Curve curve{label, tilt, degradation.column(stem + "_in_plane_arcsec").values};
     curve.dashed = stem == "calibration" || stem == "radial";
     plot.curves.push_back(curve);
     curve.y = degradation.column(stem + "_out_of_plane_arcsec").values;
@@ -320,11 +308,8 @@ Plot::Curve level_curve(const Map& map, double level) {
 }
 
 Plot design_plot(const std::vector<Map>& maps) {
-  Plot plot;
-  plot.name = "design";
-  plot.title = "Which board and lens give the paper's errors at zero tilt";
-  plot.x_label = maps[0].x_label;
-  plot.y_label = maps[0].y_label;
+  Plot plot{"design", "Which board and lens give the paper's errors at zero tilt", maps[0].x_label,
+            maps[0].y_label};
   const Plot::Colour colours[] = {Plot::Colour::blue, Plot::Colour::vermilion};
   for (size_t k = 0; k < 2; ++k) {
     for (const double side : {0.0, -1.0, 1.0}) {

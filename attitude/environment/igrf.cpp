@@ -9,8 +9,6 @@
 namespace photorque {
 namespace {
 
-constexpr double wgs84_semi_major_m = 6378137.0;
-constexpr double wgs84_flattening = 1.0 / 298.257223563;
 constexpr double first_epoch = 1900.0;
 constexpr double years_per_epoch = 5.0;
 constexpr int epochs = 26;
@@ -93,9 +91,10 @@ Vec3 GeomagneticModel::north_east_down_T(const GeocentricPosition& position) con
 }
 
 Vec3 GeomagneticModel::north_east_down_T(const GeodeticPosition& position) const {
-  const double e2 = wgs84_flattening * (2.0 - wgs84_flattening);
+  const double e2 = earth_flattening * (2.0 - earth_flattening);
   const double sin_lat = std::sin(position.latitude_rad), cos_lat = std::cos(position.latitude_rad);
-  const double prime_vertical_m = wgs84_semi_major_m / std::sqrt(1.0 - e2 * sin_lat * sin_lat);
+  const double prime_vertical_m =
+      earth_equatorial_radius_m / std::sqrt(1.0 - e2 * sin_lat * sin_lat);
   const double axis_distance_m = (prime_vertical_m + position.height_m) * cos_lat;
   const double plane_distance_m = (prime_vertical_m * (1.0 - e2) + position.height_m) * sin_lat;
   const double colatitude_rad = std::atan2(axis_distance_m, plane_distance_m);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/constants.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -14,10 +15,9 @@ namespace photorque {
 template <class T>
 T ellipsoid_altitude_m(const Eigen::Matrix<T, 3, 1>& position_m) {
   using std::sqrt;
-  constexpr double equatorial_radius_m = 6378137.0, flattening = 1.0 / 298.257223563;
   const T square_m2 = position_m.dot(position_m);
   const T height = position_m.z() * position_m.z() / square_m2;
-  return sqrt(square_m2) - equatorial_radius_m * (1.0 - flattening * height);
+  return sqrt(square_m2) - earth_equatorial_radius_m * (1.0 - earth_flattening * height);
 }
 
 // A mean atmosphere from 100 to 1000 km. The density of a day differs from it by factors.

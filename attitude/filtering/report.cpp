@@ -28,10 +28,7 @@ size_t settled_row(size_t rows) {
 }
 
 Table methods_table(const std::vector<Ingredients>& methods, const TruthTrack& truth) {
-  Table table =
-      Table::of("ingredients", "Contribution of each instrument and model",
-                {"way", "estimate", "rms_error_arcsec", "predicted_arcsec", "rms_rate_error_rad_s",
-                 "nees_per_number", "rows_in_95_band", "nis_attitude", "nis_gyro", "rate_walk"});
+  Table table = Table::of("ingredients", "Contribution of each instrument and model");
   for (const Ingredients& method : methods) {
     const Estimation& e = method.estimation;
     for (const bool smooth : {false, true}) {
@@ -69,8 +66,7 @@ namespace {
 // Root-mean-square error in each block of rows.
 Plot::Curve error_curve(const std::string& label, const std::vector<AttitudeEstimate>& estimates,
                         const TruthTrack& truth) {
-  Plot::Curve curve;
-  curve.label = label;
+  Plot::Curve curve{label};
   constexpr size_t intervals = 240;
   const size_t step = std::max<size_t>(1, estimates.size() / intervals);
   for (size_t i = 0; i < estimates.size(); i += step) {
@@ -94,16 +90,11 @@ Plot::Curve error_curve(const std::string& label, const std::vector<AttitudeEsti
 }  // namespace
 
 Plot methods_plot(const std::vector<Ingredients>& methods, const TruthTrack& truth) {
-  Plot plot;
-  plot.name = "attitude_errors";
-  plot.title = "Contribution of each instrument and model";
-  plot.x_label = "time [s]";
   const std::string what = truth.empty() ? "predicted attitude error" : "attitude error";
-  plot.y_label = "filter: " + what + " [arcsec]";
+  Plot plot{"attitude_errors", "Contribution of each instrument and model", "time [s]",
+            "filter: " + what + " [arcsec]"};
   plot.y_log = true;
-  Plot::Panel below;
-  below.y_label = "smoother [arcsec]";
-  below.y_log = true;
+  Plot::Panel below{"smoother [arcsec]", {}, true};
   for (const Ingredients& method : methods) {
     plot.curves.push_back(error_curve(method.name, method.estimation.filtered, truth));
     below.curves.push_back(error_curve(method.name, method.estimation.smoothed, truth));
@@ -134,11 +125,11 @@ Table estimate_table(const Estimation& e) {
   const std::vector<std::string> quantities = {"q_w",          "q_x",          "q_y",
                                                "q_z",          "rate_x_rad_s", "rate_y_rad_s",
                                                "rate_z_rad_s", "sigma_rad",    "rate_sigma_rad_s"};
-  Table table = Table::of("estimate", "Attitude and rate, filtered and smoothed", {"t_s"});
+  Table table = Table::of("estimate", "Attitude and rate, filtered and smoothed");
   const size_t step = thinning(e.filtered.size());
   std::vector<double> times;
   for (size_t i = 0; i < e.filtered.size(); i += step) times.push_back(e.filtered[i].time_s);
-  table.column("t_s").values = times;
+  table.add("t_s", times);
   for (const auto* estimates : {&e.filtered, &e.smoothed}) {
     std::vector<std::vector<double>> columns(quantities.size());
     for (size_t i = 0; i < estimates->size(); i += step) {

@@ -266,17 +266,14 @@ EstimateResult estimate_by_all_methods(const EstimateStudy& study, const Reading
 Recording recording_of(const std::vector<AttitudeEstimate>& estimates, const Recording& source) {
   Recording out;
   out.time_s = source.time_s;
-  const char* names[] = {"q_w",          "q_x",          "q_y",         "q_z",
-                         "gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"};
-  std::vector<Channel> own;
-  for (const char* name : names) own.push_back({name, {}});
+  for (const char* name : quaternion_names) out.channels.push_back({name, {}});
+  for (const char* name : gyro_names) out.channels.push_back({name, {}});
   for (const AttitudeEstimate& e : estimates) {
     const Quat& q = e.lab_from_body;
     const Vec3& w = e.inertial_rate_rad_s;
     const double row[] = {q.w(), q.x(), q.y(), q.z(), w.x(), w.y(), w.z()};
-    for (size_t k = 0; k < own.size(); ++k) own[k].values.push_back(row[k]);
+    for (size_t k = 0; k < std::size(row); ++k) out.channels[k].values.push_back(row[k]);
   }
-  out.channels = std::move(own);
   for (const Channel& channel : source.channels) {
     if (out.find(channel.name) == nullptr) out.channels.push_back(channel);
   }
@@ -361,16 +358,12 @@ ConsistencyResult consistency_of(const EstimateStudy& study, const PropagationRu
   result.part_smoothed = ensemble.part_in_band(smoothed, from);
   const std::vector<double> rms_f = ensemble.rms_filtered_rad(),
                             rms_s = ensemble.rms_smoothed_rad();
-  Plot plot;
-  plot.name = "normalised_errors";
-  plot.title = "Normalised errors squared, mean of " + std::to_string(study.runs) +
-               " runs, and their 95 % band";
-  plot.x_label = "time [s]";
-  plot.y_label = "NEES of attitude and rate";
+  Plot plot{"normalised_errors",
+            "Normalised errors squared, mean of " + std::to_string(study.runs) +
+                " runs, and their 95 % band",
+            "time [s]", "NEES of attitude and rate"};
   plot.levels = {ensemble.band().low, ensemble.band().high};
-  Plot::Curve f, s, ef, es;
-  f.label = ef.label = "filter";
-  s.label = es.label = "smoother";
+  Plot::Curve f{"filter"}, s{"smoother"}, ef{"filter"}, es{"smoother"};
   for (size_t i = 0; i < filtered.size(); ++i) {
     if (rms_f[i] > 0.0 && i + 1 < filtered.size()) {
       result.worst_gain = std::max(result.worst_gain, rms_s[i] / rms_f[i]);
@@ -384,11 +377,7 @@ ConsistencyResult consistency_of(const EstimateStudy& study, const PropagationRu
     es.y.push_back(in_arcsec(rms_s[i]));
   }
   plot.curves = {f, s};
-  Plot::Panel below;
-  below.y_label = "rms attitude error [arcsec]";
-  below.y_log = true;
-  below.curves = {ef, es};
-  plot.below.push_back(below);
+  plot.below.push_back({"rms attitude error [arcsec]", {ef, es}, true});
   result.product.plots.push_back(plot);
   return result;
 }

@@ -6,7 +6,6 @@
 #include "attitude/disturbances/kind.h"
 #include "attitude/propagation/run.h"
 #include "attitude/propagation/sampling.h"
-#include "attitude/propagation/time_history.h"
 #include "core/snapshot.h"
 
 namespace photorque {

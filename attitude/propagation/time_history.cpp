@@ -13,19 +13,6 @@
 namespace photorque {
 namespace {
 
-// At most about 1600 points, the number of pixel columns of a plot.
-Plot::Curve curve(const std::string& label, const std::vector<double>& x,
-                  const std::vector<double>& y) {
-  constexpr size_t most = 1600;
-  Plot::Curve c;
-  c.label = label;
-  for (const size_t i : lows_and_highs(y, most)) {
-    c.x.push_back(x[i]);
-    c.y.push_back(y[i]);
-  }
-  return c;
-}
-
 // Largest value of each of up to 240 intervals, for a logarithmic axis: an oscillation through zero
 // shows its amplitude. Intervals below `least` are gaps.
 Plot::Curve envelope(const std::string& label, const std::vector<double>& x,
@@ -47,13 +34,6 @@ Plot::Curve envelope(const std::string& label, const std::vector<double>& x,
 
 bool any_nonzero(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double v) { return v != 0.0; });
-}
-
-std::vector<double> magnitudes(const std::vector<double>& x, const std::vector<double>& y,
-                               const std::vector<double>& z) {
-  std::vector<double> all(x.size());
-  for (size_t i = 0; i < x.size(); ++i) all[i] = std::hypot(x[i], y[i], z[i]);
-  return all;
 }
 
 // Angles without jumps of 360°: 350°, 10° becomes 350°, 370°.
@@ -133,6 +113,34 @@ std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
 
 }  // namespace
 
+Plot::Curve thinned_curve(const std::vector<double>& x, const std::vector<double>& y) {
+  constexpr size_t most = 1600;
+  Plot::Curve curve;
+  for (const size_t i : lows_and_highs(y, most)) {
+    curve.x.push_back(x[i]);
+    curve.y.push_back(y[i]);
+  }
+  return curve;
+}
+
+Table event_table(const std::vector<Event>& events) {
+  Table table = Table::of("events", "What happened");
+  for (const Event& event : events) {
+    table.row().set("event", event.name).set("t_s", event.time_s);
+  }
+  return table;
+}
+
+std::vector<double> torque_sizes(const Table& history, const std::string& label) {
+  const auto along = [&](const char* end) -> const std::vector<double>& {
+    return history.column("torque_" + label + end).values;
+  };
+  const std::vector<double>&x = along("_x_N_m"), &y = along("_y_N_m"), &z = along("_z_N_m");
+  std::vector<double> sizes(x.size());
+  for (size_t i = 0; i < x.size(); ++i) sizes[i] = std::hypot(x[i], y[i], z[i]);
+  return sizes;
+}
+
 TimeHistory::TimeHistory(const Dynamics& dynamics)
     : table_(Table::of("time_history", "Attitude, rates, charge and torques",
                        {"t_s", "q_w", "q_x", "q_y", "q_z", "tilt_deg", "heading_deg", "yaw_deg",
@@ -200,42 +208,33 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
   };
   const std::vector<double>& t = values("t_s");
   product.tables.push_back(table_);
-  Table happened = Table::of("events", "What happened", {"event", "t_s"});
-  for (const Event& event : events) {
-    happened.row().set("event", event.name).set("t_s", event.time_s);
-  }
-  if (!events.empty()) product.tables.push_back(happened);
+  if (!events.empty()) product.tables.push_back(event_table(events));
 
   const auto add_plot = [&](const std::string& name, const std::string& title, const std::string& y,
                             std::vector<Plot::Curve> curves) {
-    Plot plot;
-    plot.name = name;
-    plot.title = title;
-    plot.x_label = "time [s]";
-    plot.y_label = y;
-    plot.curves = std::move(curves);
-    product.plots.push_back(std::move(plot));
+    product.plots.push_back({name, title, "time [s]", y, std::move(curves)});
   };
+  const auto line = [&](const std::vector<double>& y) { return thinned_curve(t, y); };
   // Oscillating curves of long runs would hide each other, so every axis has a separate panel.
   const auto add_vector_plot = [&](const std::string& name, const std::string& title,
                                    const std::string& unit, const auto& along) {
-    add_plot(name, title, "x [" + unit + "]", {curve("", t, along('x'))});
-    product.plots.back().below = {{"y [" + unit + "]", {curve("", t, along('y'))}, false},
-                                  {"z [" + unit + "]", {curve("", t, along('z'))}, false}};
+    add_plot(name, title, "x [" + unit + "]", {line(along('x'))});
+    product.plots.back().below = {{"y [" + unit + "]", {line(along('y'))}},
+                                  {"z [" + unit + "]", {line(along('z'))}}};
   };
   const auto rate_along = [&](char axis) -> const std::vector<double>& {
     return values(std::string("rate_") + axis + "_rad_s");
   };
   const std::vector<double>&charge_Ah = values("charge_drawn_Ah"),
         &power_W = values("array_power_W");
-  add_plot("tilt", "Tilt", "tilt [deg]", {curve("", t, values("tilt_deg"))});
-  add_plot("yaw", "Yaw", "yaw [deg]", {curve("", t, unwrapped_deg(values("yaw_deg")))});
+  add_plot("tilt", "Tilt", "tilt [deg]", {line(values("tilt_deg"))});
+  add_plot("yaw", "Yaw", "yaw [deg]", {line(unwrapped_deg(values("yaw_deg")))});
   add_vector_plot("rates", "Body rates", "rad/s", rate_along);
   if (any_nonzero(charge_Ah)) {
-    add_plot("charge", "Charge missing from the battery", "charge [Ah]", {curve("", t, charge_Ah)});
+    add_plot("charge", "Charge missing from the battery", "charge [Ah]", {line(charge_Ah)});
   }
   if (any_nonzero(power_W)) {
-    add_plot("array_power", "Power of the solar array", "power [W]", {curve("", t, power_W)});
+    add_plot("array_power", "Power of the solar array", "power [W]", {line(power_W)});
   }
   std::vector<std::string> shown;
   std::vector<std::vector<double>> sizes;
@@ -244,7 +243,7 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     const auto along = [&](char axis) -> const std::vector<double>& {
       return values("torque_" + label + "_" + axis + "_N_m");
     };
-    std::vector<double> size = magnitudes(along('x'), along('y'), along('z'));
+    std::vector<double> size = torque_sizes(table_, label);
     if (!any_nonzero(size)) continue;
     largest_N_m = std::max(largest_N_m, *std::max_element(size.begin(), size.end()));
     shown.push_back(label);

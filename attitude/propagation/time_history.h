@@ -9,6 +9,16 @@
 
 namespace photorque {
 
+// A curve of at most about 1600 points, the number of pixel columns of a plot, that keeps every
+// extreme.
+Plot::Curve thinned_curve(const std::vector<double>& x, const std::vector<double>& y);
+
+// The table "events".
+Table event_table(const std::vector<Event>& events);
+
+// Magnitudes of the torque of a disturbance in the rows of the table "time_history".
+std::vector<double> torque_sizes(const Table& history, const std::string& label);
+
 class TimeHistory {
  public:
   explicit TimeHistory(const Dynamics& dynamics);
@@ -18,8 +28,8 @@ class TimeHistory {
 
   // Tables "time_history" and "events". Plots "tilt", "yaw", "rates", "charge" and "array_power"
   // (if they are not zero), "torque_fractions" and "torques" (magnitudes of all torques), and one
-  // for each disturbance. Curves are thinned to about 1600 points that keep every extreme. The
-  // largest tilt is taken from all `states` of the run, not only from the rows of this history.
+  // for each disturbance, of thinned_curve(). The largest tilt is taken from all `states` of the
+  // run, not only from the rows of this history.
   Product product(const std::vector<PlatformState>& states, const std::vector<Event>& events,
                   const Propagator::Statistics& statistics) const;
 

@@ -156,7 +156,7 @@ std::vector<size_t> stuck_rows(const std::vector<double>& x, const Stuck& found)
 // The components w, x, y, z of the attitude; empty unless there are all four.
 std::vector<Channel*> quaternion_channels(Recording& recording) {
   std::vector<Channel*> q;
-  for (const char* name : {"q_w", "q_x", "q_y", "q_z"}) {
+  for (const char* name : quaternion_names) {
     q.push_back(recording.find(name));
     if (q.back() == nullptr) return {};
   }
@@ -205,7 +205,7 @@ void remove_outliers(Recording& recording) {
     ++recording.report.outliers[channel.name];
   };
   std::vector<Channel*> gyro;
-  for (const char* name : {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"}) {
+  for (const char* name : gyro_names) {
     if (Channel* channel = recording.find(name)) gyro.push_back(channel);
   }
   std::vector<Stuck> stuck;

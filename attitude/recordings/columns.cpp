@@ -137,8 +137,6 @@ ScalarReading scalar_reading(Scalar scalar, const Quat& lab_from_body,
 
 namespace {
 
-constexpr const char* quaternion_names[] = {"q_w", "q_x", "q_y", "q_z"};
-constexpr const char* gyro_names[] = {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"};
 constexpr const char* euler_names[] = {"roll_rad", "pitch_rad", "yaw_rad"};
 constexpr const char* angle_names[] = {"angle_rad", "roll_rad", "pitch_rad", "yaw_rad"};
 constexpr const char* event_names[] = {"thruster", "impulse", "event"};

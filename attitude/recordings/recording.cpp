@@ -8,6 +8,7 @@
 
 #include "attitude/recordings/aem.h"
 #include "attitude/recordings/cleaning.h"
+#include "attitude/recordings/columns.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/files.h"
@@ -17,50 +18,17 @@ namespace photorque {
 
 namespace {
 
-constexpr std::string_view old_yaw = "heading_rad", new_yaw = "yaw_rad";
-
-// The known channels. A header may name them in another unit of the same kind.
-constexpr std::string_view known_channels[] = {
-    "t_s",
-    "gyro_x_rad_s",
-    "gyro_y_rad_s",
-    "gyro_z_rad_s",
-    "command_x_N_m",
-    "command_y_N_m",
-    "command_z_N_m",
-    "command_x_N",
-    "command_y_N",
-    "command_body_x_N",
-    "command_body_y_N",
-    "battery_current_A",
-    "array_power_W",
-    "array_voltage_V",
-    "array_current_A",
-    "cell_temperature_K",
-    "led_current_A",
-    "battery_voltage_V",
-    old_yaw,
-    "angle_rad",
-    "roll_rad",
-    "pitch_rad",
-    "yaw_rad",
-    "rate_rad_s",
-    "wheel_x_rad_s",
-    "wheel_y_rad_s",
-    "wheel_z_rad_s",
-    "tilt_rad",
-    "rate_magnitude_rad_s",
-    "accel_x_m_s2",
-    "accel_y_m_s2",
-    "accel_z_m_s2",
-    "mag_x_T",
-    "mag_y_T",
-    "mag_z_T",
-    "x_m",
-    "y_m",
-    "velocity_x_m_s",
-    "velocity_y_m_s",
-};
+constexpr const char *old_yaw = "heading_rad", *new_yaw = "yaw_rad";
+// Known channels besides gyro, commands and scalars: time, power, and the motion about one axis.
+constexpr std::array other_channels = {"t_s",
+                                       "array_power_W",
+                                       "array_voltage_V",
+                                       "array_current_A",
+                                       "cell_temperature_K",
+                                       "battery_voltage_V",
+                                       "angle_rad",
+                                       "rate_rad_s",
+                                       old_yaw};
 
 // One column of the file: its channel and the factor to SI.
 struct FileColumn {
@@ -68,14 +36,21 @@ struct FileColumn {
   double to_SI = 1.0;
 };
 
+// The known channels and their units. A header may name them in another unit of the same kind.
 // Computed once, because a preamble may have a million cells that could be names.
-const std::vector<KeyUnit>& units_of_known_channels() {
-  static const std::vector<KeyUnit> units = [] {
-    std::vector<KeyUnit> all;
-    for (const std::string_view channel : known_channels) all.push_back(unit_of_key(channel));
+const std::vector<std::pair<std::string, KeyUnit>>& known_channels() {
+  static const auto known = [] {
+    std::vector<std::string> names(other_channels.begin(), other_channels.end());
+    names.insert(names.end(), gyro_names.begin(), gyro_names.end());
+    names.insert(names.end(), schedule_channels.begin(), schedule_channels.end());
+    for (int s = 0; s < scalar_count; ++s) {
+      names.emplace_back(channel_traits(vector_channels + s).column);
+    }
+    std::vector<std::pair<std::string, KeyUnit>> all;
+    for (const std::string& name : names) all.emplace_back(name, unit_of_key(name));
     return all;
   }();
-  return units;
+  return known;
 }
 
 FileColumn column_named(const std::string& in_file, const RecordingOptions& options) {
@@ -84,11 +59,8 @@ FileColumn column_named(const std::string& in_file, const RecordingOptions& opti
     if (written == in_file) name = channel;
   }
   const KeyUnit unit = unit_of_key(name);
-  const std::vector<KeyUnit>& known = units_of_known_channels();
-  for (size_t i = 0; i < known.size(); ++i) {
-    if (known[i].stem == unit.stem && known[i].dimension == unit.dimension) {
-      return {std::string(known_channels[i]), unit.to_SI};
-    }
+  for (const auto& [channel, known] : known_channels()) {
+    if (known.stem == unit.stem && known.dimension == unit.dimension) return {channel, unit.to_SI};
   }
   return {name, 1.0};
 }
@@ -129,12 +101,10 @@ class RecordingReader {
     for (const auto& [channel, written] : options_.columns) {
       recording_.report.absent_columns.insert(written);
     }
-    for (const char* name : {"q_w", "q_x", "q_y", "q_z"}) recording_.channels.push_back({name, {}});
+    for (const char* name : quaternion_names) recording_.channels.push_back({name, {}});
     if (std::ranges::any_of(attitudes,
                             [](const auto& row) { return row.rate_body_rad_s.has_value(); })) {
-      for (const char* name : {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"}) {
-        recording_.channels.push_back({name, {}});
-      }
+      for (const char* name : gyro_names) recording_.channels.push_back({name, {}});
     }
     for (const AemAttitude& row : attitudes) {
       ++recording_.report.rows_read;
@@ -203,7 +173,8 @@ class RecordingReader {
       columns_.push_back(column_named(header_cell_text(cells_[i]), options_));
       const std::string& name = columns_.back().name;
       names_channel = names_channel ||
-                      std::ranges::find(known_channels, name) != std::ranges::end(known_channels);
+                      std::ranges::any_of(known_channels(),
+                                          [&](const auto& known) { return known.first == name; });
       if (name == (options_.rate_Hz ? "frame" : "t_s")) time_column_ = i;
     }
     if (!time_column_ && !(options_.rate_Hz && names_channel)) return false;
@@ -245,7 +216,7 @@ class RecordingReader {
 
   // The name that replaces a former name of a channel in this file.
   std::string successor_of(const std::string& channel) const {
-    return recording_.report.has_old_yaw && channel == old_yaw ? std::string(new_yaw) : channel;
+    return recording_.report.has_old_yaw && channel == old_yaw ? new_yaw : channel;
   }
 
   void take_row(std::string_view line) {

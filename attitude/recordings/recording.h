@@ -77,6 +77,9 @@ struct Recording {
   Schedule schedule() const;
 };
 
+// Channels of an attitude and of a gyro.
+inline constexpr std::array quaternion_names = {"q_w", "q_x", "q_y", "q_z"};
+inline constexpr std::array gyro_names = {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"};
 // Channels that Recording::schedule() uses.
 inline constexpr std::array schedule_channels = {
     "command_x_N_m", "command_y_N_m",    "command_z_N_m",     "command_x_N",

@@ -119,14 +119,13 @@ struct Row {
 class Rows {
  public:
   explicit Rows(const Recording& recording) : recording_(recording) {
-    const char* names[] = {"q_w",          "q_x",          "q_y",         "q_z",
-                           "gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"};
-    for (size_t k = 0; k < channels_.size(); ++k) channels_[k] = recording.find(names[k]);
     for (size_t k = 0; k < 4; ++k) {
-      if (channels_[k] == nullptr) {
-        throw InputError({}, "recording", "no channel " + std::string(names[k]), "attitudes");
-      }
+      channels_[k] = recording.find(quaternion_names[k]);
+      if (channels_[k] != nullptr) continue;
+      throw InputError({}, "recording", "no channel " + std::string(quaternion_names[k]),
+                       "attitudes");
     }
+    for (size_t k = 0; k < 3; ++k) channels_[4 + k] = recording.find(gyro_names[k]);
   }
 
   std::vector<Row> all(double interval_s) const {
@@ -168,10 +167,7 @@ class Rows {
     if (after >= t.size() || after <= before || t[after] - t[before] > 2.0 * interval_s) {
       return Vec3::Constant(NAN);
     }
-    const Quat turn = attitude(before).conjugate() * attitude(after);
-    const double angle = 2.0 * std::atan2(turn.vec().norm(), std::abs(turn.w()));
-    if (angle == 0.0) return Vec3::Zero();
-    return std::copysign(angle, turn.w()) / (t[after] - t[before]) * turn.vec().normalized();
+    return turn_vector(attitude(before).conjugate() * attitude(after)) / (t[after] - t[before]);
   }
 
   const Recording& recording_;
@@ -307,9 +303,7 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
       .add("published_resolution_m", components(Vec3::Constant(published_resolution_m)));
   product.tables.push_back(axes);
 
-  Table masses =
-      Table::of("moving_masses", "Moves of the balancing masses",
-                {"mass", "direction_x", "direction_y", "direction_z", "steps", "travel_m"});
+  Table masses = Table::of("moving_masses", "Moves of the balancing masses");
   for (size_t i = 0; i < run.masses.size(); ++i) {
     const MovingMass& mass = run.masses[i];
     const double steps = static_cast<double>(result.command.steps[i]);
@@ -339,10 +333,8 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
   exact("published_resolution_m", published_resolution_m);
   exact("chi2_per_sample", result.chi2_per_sample);
 
-  Plot plot;
-  plot.name = "balance_residuals";
-  plot.title = "Camera minus fitted trajectory, about lab axes";
-  plot.x_label = "time [s]";
+  Plot plot{"balance_residuals", "Camera minus fitted trajectory, about lab axes", "time [s]",
+            "about x [arcsec]"};
   // More points would hide each other.
   constexpr size_t max_points = 2000;
   const size_t rows = result.residual_time_s.size();
@@ -357,10 +349,8 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
     }
     return curve;
   };
-  plot.y_label = "about x [arcsec]";
   plot.curves = {residuals(0)};
-  plot.below = {{"about y [arcsec]", {residuals(1)}, false},
-                {"about z [arcsec]", {residuals(2)}, false}};
+  plot.below = {{"about y [arcsec]", {residuals(1)}}, {"about z [arcsec]", {residuals(2)}}};
   product.plots.push_back(std::move(plot));
   return product;
 }

@@ -268,14 +268,10 @@ Table budget_table(const Budget& budget) {
 }
 
 Plot tilt_plot(const Budget& budget) {
-  Plot plot;
-  plot.name = "torque_by_tilt";
-  plot.title = "Disturbance torques by tilt";
-  plot.x_label = "tilt [deg]";
-  plot.y_label = "torque [N m]";
+  Plot plot{"torque_by_tilt", "Disturbance torques by tilt", "tilt [deg]", "torque [N m]"};
   plot.y_log = true;
   for (const std::string& name : names_of(budget.model.disturbances)) {
-    plot.curves.push_back({name, {}, {}, {}, false});
+    plot.curves.push_back({name});
   }
   const double limit_rad = budget.model.platform.tilt_limit_rad.value_or(30.0 * degree_rad);
   const double heading_rad = std::atan2((budget.state.lab_from_body * Vec3::UnitZ()).y(),

@@ -6,11 +6,9 @@ namespace photorque {
 
 namespace {
 
-// Annealed copper: Young's modulus, density, resistivity at 20 °C (ASM Handbook vol. 2; IEC 60028).
+// Annealed copper (ASM Handbook vol. 2).
 constexpr double copper_modulus_Pa = 1.17e11;
 constexpr double copper_poisson = 0.34;
-constexpr double copper_density_kg_m3 = 8960.0;
-constexpr double copper_resistivity_ohm_m = 1.7241e-8;
 // Silicone rubber.
 constexpr double insulation_density_kg_m3 = 1150.0;
 

@@ -186,10 +186,6 @@ double sphere_eddy_loss_W(double radius_m, double conductivity_S_m, double angul
 
 namespace {
 
-// Annealed copper at 20 °C: resistivity (International Annealed Copper Standard, IEC 60028) and
-// density.
-constexpr double copper_ohm_m = 1.7241e-8;
-constexpr double copper_kg_m3 = 8960.0;
 constexpr double strands_fill = 0.5;
 
 double turn_radius_m(const SpiralCoil& coil, int turn) {
@@ -205,7 +201,7 @@ double SpiralCoil::wire_length_m() const {
 }
 
 double SpiralCoil::copper_mass_kg() const {
-  return copper_kg_m3 * copper_area_m2 * wire_length_m();
+  return copper_density_kg_m3 * copper_area_m2 * wire_length_m();
 }
 
 std::vector<CircularFilament> turns_of(const SpiralCoil& coil, const Vec3& centre_m,
@@ -230,7 +226,7 @@ double self_inductance_H(const SpiralCoil& coil) {
 }
 
 double resistance_ohm(const SpiralCoil& coil) {
-  return coil.ac_factor * copper_ohm_m * coil.wire_length_m() / coil.copper_area_m2;
+  return coil.ac_factor * copper_resistivity_ohm_m * coil.wire_length_m() / coil.copper_area_m2;
 }
 
 double mutual_inductance_H(const std::vector<CircularFilament>& a,

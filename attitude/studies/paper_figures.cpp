@@ -354,12 +354,7 @@ namespace {
 Plot elastic_plot() {
   const DumbbellArms arms{Vec3::UnitX(), 1.0, 1.0, 0.0, 1.0};
   const CounterbalanceBeams beams{1.0, 1.0, 1.0, 1};
-  Plot plot;
-  plot.name = "elastic_torque_by_tilt";
-  plot.title = "Elastic torque over its largest value, balanced at zero tilt";
-  plot.x_label = "tilt [deg]";
-  plot.y_label = "torque / largest torque";
-  Plot::Curve dumbbell{"dumbbell", {}, {}, {}, false}, tabletop{"tabletop", {}, {}, {}, false};
+  Plot::Curve dumbbell{"dumbbell"}, tabletop{"tabletop"};
   for (int tilt_deg = 0; tilt_deg <= 90; ++tilt_deg) {
     const double tilt_rad = tilt_deg * degree_rad;
     dumbbell.x.push_back(tilt_deg);
@@ -367,14 +362,15 @@ Plot elastic_plot() {
     tabletop.x.push_back(tilt_deg);
     tabletop.y.push_back(sag_torque_N_m(beams, tilt_rad, 1.0) / sag_torque_N_m(beams, pi / 4, 1.0));
   }
-  plot.curves = {dumbbell, tabletop};
-  return plot;
+  return {"elastic_torque_by_tilt",
+          "Elastic torque over its largest value, balanced at zero tilt",
+          "tilt [deg]",
+          "torque / largest torque",
+          {dumbbell, tabletop}};
 }
 
 Table figures_table(const std::vector<PaperFigure>& figures) {
-  Table table =
-      Table::of("paper_figures", "Published figures compared with photorque",
-                {"quantity", "section", "why", "published", "ours", "ratio", "ours_as_published"});
+  Table table = Table::of("paper_figures", "Published figures compared with photorque");
   for (const PaperFigure& f : figures) {
     table.row()
         .set("quantity", f.quantity)
@@ -390,8 +386,7 @@ Table figures_table(const std::vector<PaperFigure>& figures) {
 
 Table sensitivities_table(const std::vector<PaperSensitivity>& all) {
   Table table =
-      Table::of("paper_sensitivities", "Sensitivity of the figures to unstated dimensions",
-                {"quantity", "assumed", "value", "exponent", "value_for_published"});
+      Table::of("paper_sensitivities", "Sensitivity of the figures to unstated dimensions");
   for (const PaperSensitivity& s : all) {
     table.row()
         .set("quantity", s.quantity)

@@ -1,8 +1,6 @@
 #include "core/numerics/sphere_series.h"
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "core/constants.h"
 #include "core/numerics/linear.h"

@@ -16,12 +16,7 @@ struct Settings::Log {
   std::map<const SettingsNode*, std::set<std::string>> asked;  // table → requested keys
 
   void mark_all(const SettingsNode& node) {
-    read.insert(&node);
-    if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
-      for (const auto& item : *array) mark_all(item);
-    } else if (const auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
-      for (const auto& [key, item] : *table) mark_all(item);
-    }
+    for_each_node(node, [this](const SettingsNode& one) { read.insert(&one); });
   }
 };
 

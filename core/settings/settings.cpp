@@ -102,17 +102,9 @@ std::string listed_names(std::set<std::string> names, std::string_view wanted) {
 
 // The most similar known key, otherwise a list of the first known keys.
 std::string expected_keys(std::string_view key, const std::set<std::string>& known) {
-  constexpr size_t most = 12;
-  if (const std::string likest = nearest(key, known); !likest.empty()) {
-    return "a known key, perhaps \"" + likest + "\"";
-  }
-  std::string list;
-  size_t count = 0;
-  for (const std::string& name : known) {
-    if (++count > most) break;
-    list += (count > 1 ? ", " : "") + name;
-  }
-  return "one of " + list + (count > most ? ", …" : "");
+  const std::string likest = nearest(key, known);
+  return likest.empty() ? "one of " + listed_names(known, key)
+                        : "a known key, perhaps \"" + likest + "\"";
 }
 
 Settings::Settings(std::shared_ptr<const SettingsNode> root, std::string name)

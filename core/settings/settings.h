@@ -34,6 +34,17 @@ struct SettingsNode {
   }
 };
 
+// Calls `visit` with the node and with every node below it, each before those below itself.
+template <class Node, class Visit>
+void for_each_node(Node& node, const Visit& visit) {
+  visit(node);
+  if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
+    for (auto& [key, item] : *table) for_each_node(item, visit);
+  } else if (auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (auto& item : *items) for_each_node(item, visit);
+  }
+}
+
 // A short description for error messages: "-3", "\"abc\"", "an array of 2".
 std::string describe(const SettingsNode& node);
 
@@ -95,7 +106,6 @@ class Settings {
   UncertainVec3 uncertain_vector(std::string_view key) const;
   // A real number without a fractional part, such as 1e8, is accepted.
   int64_t integer(std::string_view key, int64_t low, int64_t high) const;
-  int64_t integer_or(std::string_view key, int64_t otherwise, int64_t low, int64_t high) const;
   bool flag_or(std::string_view key, bool otherwise) const;
   std::string text(std::string_view key) const;
   std::string text_or(std::string_view key, std::string_view otherwise) const;
@@ -104,7 +114,6 @@ class Settings {
   size_t choice_or(std::string_view key, const std::vector<std::string>& choices,
                    size_t otherwise) const;
   Vec3 vector3(std::string_view key) const;
-  Vec3 vector3_or(std::string_view key, const Vec3& otherwise_SI) const;
   Mat3 matrix3(std::string_view key) const;
   // An array of points or directions, at least one.
   std::vector<Vec3> vectors3(std::string_view key) const;

@@ -136,8 +136,7 @@ struct IntegerKey : TypedKey<IntegerKey> {
   }
 
   int64_t read(const Settings& settings) const {
-    return otherwise ? settings.integer_or(name, *otherwise, low, high)
-                     : settings.integer(name, low, high);
+    return otherwise && !settings.has(name) ? *otherwise : settings.integer(name, low, high);
   }
   operator Key() const;
 };
@@ -220,7 +219,7 @@ struct Vec3Key : TypedKey<Vec3Key> {
                     std::string_view sentence)
       : TypedKey(key, sentence, {}), otherwise(usual) {}
   Vec3 read(const Settings& settings) const {
-    return otherwise ? settings.vector3_or(name, Vec3(otherwise->data())) : settings.vector3(name);
+    return otherwise && !settings.has(name) ? Vec3(otherwise->data()) : settings.vector3(name);
   }
   operator Key() const;
 };

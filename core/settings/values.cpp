@@ -140,11 +140,6 @@ int64_t Settings::integer(std::string_view key, int64_t low, int64_t high) const
   return *whole;
 }
 
-int64_t Settings::integer_or(std::string_view key, int64_t otherwise, int64_t low,
-                             int64_t high) const {
-  return has(key) ? integer(key, low, high) : otherwise;
-}
-
 bool Settings::flag_or(std::string_view key, bool otherwise) const {
   const SettingsNode* node = find(key).node;
   return node == nullptr ? otherwise : as<bool>(*node, key, "true or false");
@@ -175,11 +170,6 @@ size_t Settings::choice_or(std::string_view key, const std::vector<std::string>&
 Vec3 Settings::vector3(std::string_view key) const {
   const auto [node, factor] = require(key, "an array of 3 numbers");
   return to_vector3(*node, key, factor);
-}
-
-Vec3 Settings::vector3_or(std::string_view key, const Vec3& otherwise_SI) const {
-  const auto [node, factor] = find(key);
-  return node == nullptr ? otherwise_SI : to_vector3(*node, key, factor);
 }
 
 Mat3 Settings::matrix3(std::string_view key) const {

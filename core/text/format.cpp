@@ -8,7 +8,6 @@
 namespace photorque {
 namespace {
 
-constexpr std::string_view minus_sign = "−";
 constexpr std::array<std::string_view, 10> superscripts = {"⁰", "¹", "²", "³", "⁴",
                                                            "⁵", "⁶", "⁷", "⁸", "⁹"};
 
@@ -32,18 +31,6 @@ size_t valid_character_bytes(std::string_view text) {
     return continues(1) && continues(2) && continues(3) && !overlong && !beyond_unicode ? 4 : 0;
   }
   return 0;
-}
-
-std::string with_true_minus(const std::string& ascii) {
-  std::string text;
-  for (const char c : ascii) {
-    if (c == '-') {
-      text += minus_sign;
-    } else {
-      text += c;
-    }
-  }
-  return text;
 }
 
 // Whether the character is one of U+0080 to U+009F, which some terminals treat as escape sequences.
@@ -138,6 +125,14 @@ std::string readable_number(double value, int significant) {
     return with_true_minus(scientific.substr(0, e)) + "×" + power_of_ten(exponent);
   }
   return with_true_minus(printed("%.*f", std::max(0, significant - 1 - exponent), value));
+}
+
+std::string with_true_minus(std::string text) {
+  constexpr std::string_view minus = "−";
+  for (size_t at = 0; (at = text.find('-', at)) != std::string::npos; at += minus.size()) {
+    text.replace(at, 1, minus);
+  }
+  return text;
 }
 
 std::string power_of_ten(int exponent) {

@@ -44,6 +44,9 @@ std::string round_trip_number(double value);
 // 1e5): "812.3", "−1.127×10⁻⁹". NaN is "–".
 std::string readable_number(double value, int significant = 4);
 
+// The text with true minus signs instead of hyphens.
+std::string with_true_minus(std::string text);
+
 // "10⁻⁹" for −9; empty for 0.
 std::string power_of_ten(int exponent);
 

@@ -96,9 +96,7 @@ Battery::Step Battery::step(double charge_J, double surplus_W, double step_s) co
 }
 
 double LampDroop::light_at(double time_s) const {
-  const double faded = depth * -std::expm1(-time_s / time_constant_s);
-  const double warmth_K = rise_K * -std::expm1(-time_s / rise_time_constant_s);
-  return (1.0 - faded) * (1.0 - roll_off_1_K * warmth_K);
+  return light(-std::expm1(-time_s / time_constant_s), -std::expm1(-time_s / rise_time_constant_s));
 }
 
 DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const DaySettings& s) {
@@ -190,10 +188,9 @@ Product day_product(const DayResult& day) {
                              {"array_power_W", day.array_W, {}},
                              {"battery_charge_J", day.charge_J, {}}}});
   Plot plot{"day_history", "Array and battery over time", "time [h]", "array [W]"};
-  plot.curves.push_back({"array power", hours, day.array_W, {}, false});
-  plot.below.push_back(
-      {"cells [K]", {{"cell temperature", hours, day.temperature_K, {}, false}}, false});
-  plot.below.push_back({"battery [Wh]", {{"charge", hours, charge_Wh, {}, false}}, false});
+  plot.curves.push_back({"array power", hours, day.array_W});
+  plot.below.push_back({"cells [K]", {{"cell temperature", hours, day.temperature_K}}});
+  plot.below.push_back({"battery [Wh]", {{"charge", hours, charge_Wh}}});
   product.plots.push_back(plot);
   return product;
 }

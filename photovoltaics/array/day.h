@@ -20,8 +20,12 @@ struct LampDroop {
   double rise_K = 0.0;        // final rise, ≥ 0
   double rise_time_constant_s = 300.0;
 
+  // The light after these fractions of the fading and of the rise.
+  double light(double faded, double warm) const {
+    return (1.0 - depth * faded) * (1.0 - roll_off_1_K * rise_K * warm);
+  }
   double light_at(double time_s) const;
-  double min_light() const { return (1.0 - depth) * (1.0 - roll_off_1_K * rise_K); }
+  double min_light() const { return light(1.0, 1.0); }
 };
 
 struct Battery {

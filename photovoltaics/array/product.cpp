@@ -9,12 +9,7 @@ namespace {
 
 Map cell_map(const ArrayResult& result, const std::string& name, const std::string& title,
              const std::string& unit, std::vector<double> values, bool signed_values = false) {
-  Map map;
-  map.name = name;
-  map.title = title;
-  map.unit = unit;
-  map.width = result.columns;
-  map.height = result.rows;
+  Map map{name, title, unit, result.columns, result.rows};
   map.x_high = result.columns;
   map.y_high = result.rows;
   map.x_label = "cell along u";
@@ -67,14 +62,14 @@ Table cell_table(const ArrayResult& result) {
 void add_plots(const ArrayResult& result, const Table& iv, Product& product) {
   const auto& v = iv.column("voltage_V").values;
   Plot current{"iv_curve", "Current of the array", "voltage [V]", "current [A]"};
-  current.curves.push_back({"array", v, iv.column("current_A").values, {}, false});
+  current.curves.push_back({"array", v, iv.column("current_A").values});
   current.curves.push_back({"maximum, " + readable_number(result.power_W.value) + " W",
                             {result.voltage_V.value},
                             {result.current_A.value},
                             {},
                             true});
   Plot power{"pv_curve", "Power of the array", "voltage [V]", "power [W]"};
-  power.curves.push_back({"array", v, iv.column("power_W").values, {}, false});
+  power.curves.push_back({"array", v, iv.column("power_W").values});
   Plot::Curve peaks{"local maxima", {}, {}, {}, true};
   for (const ArrayPoint& p : result.maxima) {
     peaks.x.push_back(p.voltage_V);

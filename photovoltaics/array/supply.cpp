@@ -36,9 +36,8 @@ LampOutput::LampOutput(const LampDroop& droop, const LampSchedule& schedule, dou
 double LampOutput::output(const Stage& stage, double time_s) const {
   if (!stage.on) return 0.0;
   const double elapsed_s = std::max(0.0, time_s - stage.from_s);
-  const double faded = lagged(stage.faded, true, elapsed_s, droop_.time_constant_s);
-  const double warm = lagged(stage.warm, true, elapsed_s, droop_.rise_time_constant_s);
-  return (1.0 - droop_.depth * faded) * (1.0 - droop_.roll_off_1_K * droop_.rise_K * warm);
+  return droop_.light(lagged(stage.faded, true, elapsed_s, droop_.time_constant_s),
+                      lagged(stage.warm, true, elapsed_s, droop_.rise_time_constant_s));
 }
 
 double LampOutput::at(double time_s) const {

@@ -12,18 +12,16 @@ struct CellFit {
   RunResult result;
 };
 
-std::shared_ptr<CellFit> fit_cell(const ExperimentHandle& experiment, const py::object& log) {
+CellFit fit_cell(const ExperimentHandle& experiment, const py::object& log) {
   const Call call(experiment.options.experiment, py::none(), log);
-  return call.run([&] {
-    return std::make_shared<CellFit>(CellFit{run_fit_cell(experiment.options, call.console())});
-  });
+  return call.run([&] { return CellFit{run_fit_cell(experiment.options, call.console())}; });
 }
 
 }  // namespace
 
 void bind_cell_fit(py::module_& module) {
-  auto type = py::class_<CellFit, std::shared_ptr<CellFit>>(
-      module, "CellFit", "Parameters of a cell with their standard errors: its figures.");
+  auto type = py::class_<CellFit>(module, "CellFit",
+                                  "Parameters of a cell with their standard errors: its figures.");
   add_result(type, "fit-cell");
   module.def("fit_cell", &fit_cell, py::arg("experiment"), py::kw_only(),
              py::arg("log") = py::none(),

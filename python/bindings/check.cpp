@@ -9,28 +9,27 @@
 namespace photorque::python {
 namespace {
 
-std::shared_ptr<CheckReport> check_of(const ExperimentHandle& experiment) {
+CheckReport check_of(const ExperimentHandle& experiment) {
   const Call call(experiment.options.experiment, py::none(), py::none());
-  return call.run([&] { return std::make_shared<CheckReport>(run_check(experiment.options)); });
+  return call.run([&] { return run_check(experiment.options); });
 }
 
 // Performs the tasks common to all runs (options, callbacks, release of the lock) and nothing else.
-std::shared_ptr<RunOptions> nothing(const ExperimentHandle& experiment, int threads,
-                                    const py::object& seed, const py::object& progress,
-                                    const py::object& log) {
+RunOptions nothing(const ExperimentHandle& experiment, int threads, const py::object& seed,
+                   const py::object& progress, const py::object& log) {
   const RunOptions options = experiment.with(threads, seed);
   const Call call(options.experiment, progress, log);
   return call.run([&] {
     const Console console = call.console();
-    return std::make_shared<RunOptions>(options);
+    return options;
   });
 }
 
 }  // namespace
 
 void bind_check(py::module_& module) {
-  py::class_<CheckReport, std::shared_ptr<CheckReport>>(
-      module, "CheckReport", "Errors of an experiment, and the commands that can run with it.")
+  py::class_<CheckReport>(module, "CheckReport",
+                          "Errors of an experiment, and the commands that can run with it.")
       .def_property_readonly(
           "commands",
           [](const CheckReport& report) {
@@ -53,7 +52,7 @@ void bind_check(py::module_& module) {
   module.def("check", &check_of, py::arg("experiment"),
              "Reads the experiment as every command does, without running one.");
   // For the benchmark of calls.
-  const py::class_<RunOptions, std::shared_ptr<RunOptions>> options(module, "_Nothing");
+  const py::class_<RunOptions> options(module, "_Nothing");
   module.def("_nothing", &nothing, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,
              py::arg("seed") = py::none(), py::arg("progress") = py::none(),
              py::arg("log") = py::none());

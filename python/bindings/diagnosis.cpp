@@ -21,14 +21,12 @@ struct DiagnosisHandle : DiagnosisRun {
 
 using Paths = std::vector<std::filesystem::path>;
 
-std::shared_ptr<DiagnosisHandle> diagnose_recordings(const ExperimentHandle& experiment,
-                                                     const Paths& recordings, const Paths& holdouts,
-                                                     int threads, const py::object& log) {
+DiagnosisHandle diagnose_recordings(const ExperimentHandle& experiment, const Paths& recordings,
+                                    const Paths& holdouts, int threads, const py::object& log) {
   const RunOptions options = experiment.with(threads, py::none());
   const Call call(options.experiment, py::none(), log);
   return call.run([&] {
-    return std::make_shared<DiagnosisHandle>(
-        DiagnosisHandle{run_diagnose(options, recordings, holdouts, call.console()), options});
+    return DiagnosisHandle{run_diagnose(options, recordings, holdouts, call.console()), options};
   });
 }
 
@@ -60,8 +58,8 @@ void bind_diagnosis(py::module_& module) {
   const auto of = [](auto Diagnosis::*member) {
     return [member](const DiagnosisHandle& run) { return run.diagnosis.*member; };
   };
-  py::class_<DiagnosisHandle, std::shared_ptr<DiagnosisHandle>>(
-      module, "Diagnosis", "The missing effects of the experiment, and their probability.")
+  py::class_<DiagnosisHandle>(module, "Diagnosis",
+                              "The missing effects of the experiment, and their probability.")
       .def_property_readonly(
           "verdict", [](const DiagnosisHandle& run) { return name_of(run.diagnosis.verdict); },
           "\"consistent\", \"missing_physics\" or \"unexplained\".")

@@ -40,25 +40,25 @@ struct PowerHandle : LightHandle {
 
 // Result of a trace or of a power run as a Python object.
 template <class Handle, class Run>
-std::shared_ptr<Handle> handle_of(Run& run, const RunOptions& options, const char* verb) {
-  auto handle = std::make_shared<Handle>();
-  handle->run = std::move(run.run);
-  handle->light = std::move(run.light);
-  handle->result = std::move(run.result);
-  handle->head = head_of(options, verb);
-  handle->evaluate();
+Handle handle_of(Run& run, const RunOptions& options, const char* verb) {
+  Handle handle;
+  handle.run = std::move(run.run);
+  handle.light = std::move(run.light);
+  handle.result = std::move(run.result);
+  handle.head = head_of(options, verb);
+  handle.evaluate();
   return handle;
 }
 
-std::shared_ptr<LightHandle> trace(const RunOptions& options, const Console& console) {
+LightHandle trace(const RunOptions& options, const Console& console) {
   TraceRun run = run_trace(options, console);
   return handle_of<LightHandle>(run, options, "trace");
 }
 
-std::shared_ptr<PowerHandle> power(const RunOptions& options, const Console& console) {
+PowerHandle power(const RunOptions& options, const Console& console) {
   PowerRun run = run_power(options, console);
-  auto handle = handle_of<PowerHandle>(run, options, "power");
-  handle->power = std::move(run.power);
+  PowerHandle handle = handle_of<PowerHandle>(run, options, "power");
+  handle.power = std::move(run.power);
   return handle;
 }
 
@@ -115,8 +115,8 @@ py::object cells_view(const py::object& self, const std::vector<double>& cells) 
 }
 
 void bind_runs(py::module_& module) {
-  auto trace = py::class_<LightHandle, std::shared_ptr<LightHandle>>(
-      module, "Trace", "Power balance, irradiance, force and torque of a trace.");
+  auto trace = py::class_<LightHandle>(module, "Trace",
+                                       "Power balance, irradiance, force and torque of a trace.");
   add_result(trace, "trace");
   trace.def_property_readonly("flux_maps", &flux_maps_of, "A FluxMap for every such receiver.")
       .def_property_readonly(
@@ -139,8 +139,8 @@ void bind_runs(py::module_& module) {
                 path, [&] { return light_page(*self.run, self.light, self.result, self.head); });
           },
           py::arg("path"), "Writes the run as one HTML page; returns its path.");
-  auto power = py::class_<PowerHandle, LightHandle, std::shared_ptr<PowerHandle>>(
-      module, "Power", "A trace and the power of the solar array.");
+  auto power = py::class_<PowerHandle, LightHandle>(module, "Power",
+                                                    "A trace and the power of the solar array.");
   add_result(power, "power");
   power
       .def_property_readonly("curve", table_view<PowerHandle>("iv"),

@@ -25,9 +25,9 @@ std::string source_of(const py::object& function) {
   }
 }
 
-std::shared_ptr<MotionHandle> propagate_motion(const ExperimentHandle& experiment, int threads,
-                                               const py::object& seed, const py::dict& torques,
-                                               const py::object& progress, const py::object& log) {
+MotionHandle propagate_motion(const ExperimentHandle& experiment, int threads,
+                              const py::object& seed, const py::dict& torques,
+                              const py::object& progress, const py::object& log) {
   const RunOptions options = experiment.with(threads, seed);
   const Call call(options.experiment, progress, log);
   FurtherTorques further;
@@ -38,8 +38,7 @@ std::shared_ptr<MotionHandle> propagate_motion(const ExperimentHandle& experimen
     further.inputs.emplace_back("torque " + text, content_hash(source_of(law)));
   }
   return call.run([&] {
-    return std::make_shared<MotionHandle>(
-        MotionHandle{run_propagate(options, call.console(), further), options});
+    return MotionHandle{run_propagate(options, call.console(), further), options};
   });
 }
 
@@ -88,7 +87,7 @@ py::list events_of(const MotionHandle& run) {
 }  // namespace
 
 void bind_motion(py::module_& module) {
-  auto type = py::class_<MotionHandle, std::shared_ptr<MotionHandle>>(
+  auto type = py::class_<MotionHandle>(
       module, "Motion",
       "The motion of the platform: states, events and readings of the instruments.");
   add_result(type, "propagate");

@@ -13,17 +13,15 @@
 namespace photorque::python {
 namespace {
 
-std::shared_ptr<BudgetRun> budget_of(const ExperimentHandle& experiment) {
+BudgetRun budget_of(const ExperimentHandle& experiment) {
   const Call call(experiment.options.experiment, py::none(), py::none());
-  return call.run([&] { return std::make_shared<BudgetRun>(run_budget(experiment.options)); });
+  return call.run([&] { return run_budget(experiment.options); });
 }
 
-std::shared_ptr<BalanceOutcome> balance_of(const ExperimentHandle& experiment,
-                                           const std::filesystem::path& recording) {
+BalanceOutcome balance_of(const ExperimentHandle& experiment,
+                          const std::filesystem::path& recording) {
   const Call call(experiment.options.experiment, py::none(), py::none());
-  return call.run([&] {
-    return std::make_shared<BalanceOutcome>(run_balance(experiment.options, {recording}));
-  });
+  return call.run([&] { return run_balance(experiment.options, {recording}); });
 }
 
 void bind_budget(py::module_& module) {
@@ -36,8 +34,8 @@ void bind_budget(py::module_& module) {
       .def_readonly("angle_after_minute_rad", &BudgetEntry::angle_after_minute_rad)
       .def_readonly("angle_after_hour_rad", &BudgetEntry::angle_after_hour_rad)
       .def_readonly("angle_after_day_rad", &BudgetEntry::angle_after_day_rad);
-  auto type = py::class_<BudgetRun, std::shared_ptr<BudgetRun>>(
-      module, "Budget", "Every disturbance torque at one state, largest first.");
+  auto type = py::class_<BudgetRun>(module, "Budget",
+                                    "Every disturbance torque at one state, largest first.");
   add_result(type, "budget");
   type.def_property_readonly("entries", [](const BudgetRun& run) { return run.budget.entries; });
   module.def("budget", &budget_of, py::arg("experiment"),
@@ -48,8 +46,8 @@ void bind_budget(py::module_& module) {
 
 void bind_platform(py::module_& module) {
   bind_budget(module);
-  auto type = py::class_<BalanceOutcome, std::shared_ptr<BalanceOutcome>>(
-      module, "Balance", "The centre of mass that a recording shows.");
+  auto type =
+      py::class_<BalanceOutcome>(module, "Balance", "The centre of mass that a recording shows.");
   add_result(type, "balance");
   type.def_property_readonly(
           "offset_body_m",

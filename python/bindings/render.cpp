@@ -14,10 +14,6 @@
 namespace photorque::python {
 namespace {
 
-std::shared_ptr<RenderRun> render(const RunOptions& options, const Console& console) {
-  return std::make_shared<RenderRun>(run_render(options, console));
-}
-
 py::array pixels_of(const py::object& self) {
   const Picture& picture = self.cast<const RenderRun&>().picture;
   const py::ssize_t width = picture.width;
@@ -30,8 +26,8 @@ py::array pixels_of(const py::object& self) {
 }  // namespace
 
 void bind_render(py::module_& module) {
-  py::class_<RenderRun, std::shared_ptr<RenderRun>>(
-      module, "Render", "A picture of the scene with the irradiance on its receivers.")
+  py::class_<RenderRun>(module, "Render",
+                        "A picture of the scene with the irradiance on its receivers.")
       .def_property_readonly("pixels", &pixels_of,
                              "Red, green, blue (rows from the top, columns, 3), 0 to 255, sRGB: "
                              "for matplotlib's imshow.")
@@ -45,7 +41,8 @@ void bind_render(py::module_& module) {
             return write_render(self, folder).string();
           },
           py::arg("folder"), "Writes render.png as the program does; gives its path.");
-  def_traced(module, "render", &render, "Traces the experiment and looks at it from its [camera].");
+  def_traced(module, "render", &run_render,
+             "Traces the experiment and looks at it from its [camera].");
 }
 
 }  // namespace photorque::python

@@ -14,23 +14,21 @@
 namespace photorque::python {
 namespace {
 
-std::shared_ptr<CameraRun> study_camera(const ExperimentHandle& experiment, int threads,
-                                        const py::object& progress, const py::object& log) {
+CameraRun study_camera(const ExperimentHandle& experiment, int threads, const py::object& progress,
+                       const py::object& log) {
   const RunOptions options = experiment.with(threads, py::none());
   const Call call(options.experiment, progress, log);
-  return call.run([&] { return std::make_shared<CameraRun>(run_camera(options, call.console())); });
+  return call.run([&] { return run_camera(options, call.console()); });
 }
 
-std::shared_ptr<EstimateRun> estimate_attitude(const ExperimentHandle& experiment,
-                                               const std::vector<std::filesystem::path>& recordings,
-                                               const std::optional<std::filesystem::path>& truth,
-                                               int threads, const py::object& seed,
-                                               const py::object& progress, const py::object& log) {
+EstimateRun estimate_attitude(const ExperimentHandle& experiment,
+                              const std::vector<std::filesystem::path>& recordings,
+                              const std::optional<std::filesystem::path>& truth, int threads,
+                              const py::object& seed, const py::object& progress,
+                              const py::object& log) {
   const RunOptions options = experiment.with(threads, seed);
   const Call call(options.experiment, progress, log);
-  return call.run([&] {
-    return std::make_shared<EstimateRun>(run_estimate(options, call.console(), recordings, truth));
-  });
+  return call.run([&] { return run_estimate(options, call.console(), recordings, truth); });
 }
 
 py::array_t<double> matrix_of(const std::vector<AttitudeEstimate>& estimates, py::ssize_t columns,
@@ -69,7 +67,7 @@ const Estimation& chosen_of(const EstimateRun& run, size_t recording) {
 }  // namespace
 
 void bind_tracking(py::module_& module) {
-  auto camera = py::class_<CameraRun, std::shared_ptr<CameraRun>>(
+  auto camera = py::class_<CameraRun>(
       module, "Camera", "Attitude error of a camera that tracks markers: tables and maps.");
   add_result(camera, "camera");
   camera.def_readonly("images_per_s", &CameraRun::images_per_s,
@@ -79,7 +77,7 @@ void bind_tracking(py::module_& module) {
              "The tracking camera of [sensors.camera] by its geometry: the error of one image over "
              "tilt, lens and board, and simulated images against the prediction.");
 
-  auto estimate = py::class_<EstimateRun, std::shared_ptr<EstimateRun>>(
+  auto estimate = py::class_<EstimateRun>(
       module, "AttitudeEstimate", "Attitude and rate by filter and smoother, of each recording.");
   add_result(estimate, "estimate");
   estimate

@@ -16,20 +16,20 @@ struct TorqueMapHandle : TorqueMapRun {
   std::optional<RunFile> page = {};
 };
 
-std::shared_ptr<TorqueMapHandle> torque_map(const ExperimentHandle& experiment, int threads,
-                                            const py::object& seed, const py::iterable& lamps,
-                                            bool page, const py::object& progress,
-                                            const py::object& log) {
+TorqueMapHandle torque_map(const ExperimentHandle& experiment, int threads, const py::object& seed,
+                           const py::iterable& lamps, bool page, const py::object& progress,
+                           const py::object& log) {
   RunOptions options = experiment.with(threads, seed);
   const Call call(options.experiment, progress, log);
   add_lamps(options, lamps, call);
   return call.run([&] {
     TorqueMapStage stage;
-    auto handle = std::make_shared<TorqueMapHandle>(TorqueMapHandle{
-        run_torque_map(options, call.console(), page ? stage.watch() : NodeWatch())});
-    if (page)
-      handle->page = torque_map_page(*handle->run, handle->wrenches, handle->result,
-                                     std::move(stage), head_of(options, "torque-map"));
+    TorqueMapHandle handle{
+        run_torque_map(options, call.console(), page ? stage.watch() : NodeWatch())};
+    if (page) {
+      handle.page = torque_map_page(*handle.run, handle.wrenches, handle.result, std::move(stage),
+                                    head_of(options, "torque-map"));
+    }
     return handle;
   });
 }
@@ -60,7 +60,7 @@ py::tuple wrench_between(const TorqueMapHandle& run, double polar_rad, double ar
 }  // namespace
 
 void bind_wrenches(py::module_& module) {
-  auto type = py::class_<TorqueMapHandle, std::shared_ptr<TorqueMapHandle>>(
+  auto type = py::class_<TorqueMapHandle>(
       module, "TorqueMap",
       "Force and torque of light on the body over two angles, body frame: arrays of shape (around, "
       "polar, 3).");

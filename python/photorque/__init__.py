@@ -5,47 +5,8 @@ it and return NumPy arrays that are views of the library's numbers. Names contai
 errors. Wrong input raises InputError with one line; a computation that fails raises NumericalError.
 """
 
-from photorque._photorque import (
-    AttitudeEstimate,
-    Balance,
-    Budget,
-    BudgetEntry,
-    Camera,
-    CellFit,
-    CheckReport,
-    Curve,
-    Diagnosis,
-    Effect,
-    Estimate,
-    Experiment,
-    FluxMap,
-    InputError,
-    Lamp,
-    Map,
-    Motion,
-    NumericalError,
-    Panel,
-    Plot,
-    Power,
-    Render,
-    Table,
-    TorqueMap,
-    Trace,
-    __version__,
-    balance,
-    budget,
-    camera,
-    check,
-    diagnose,
-    estimate,
-    fit_cell,
-    git_hash,
-    power,
-    propagate,
-    render,
-    torque_map,
-    trace,
-)
+from photorque._photorque import *  # noqa: F403
+from photorque._photorque import __version__
 from photorque.plots import progress_bar
 from photorque.sweeps import Sweep, sweep
 

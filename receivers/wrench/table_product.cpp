@@ -277,8 +277,7 @@ std::string letter(int axis) {
 Table rows(const WrenchTable& table, const std::string& name, const std::string& source) {
   const AngleNames names = angle_names(table);
   Table result = Table::of("wrench_table_" + name,
-                           "Force and torque of " + source + " on " + name + ", body frame",
-                           {names.around + "_deg", names.polar + "_deg"});
+                           "Force and torque of " + source + " on " + name + ", body frame");
   for (const double around_rad : table.around_rad) {
     for (const double polar_rad : table.polar_rad) {
       result.row()
@@ -346,15 +345,12 @@ Map component_map(const WrenchTable& table, const VectorColumn& column, int axis
 
 Plot component_plot(const WrenchTable& table, const VectorColumn& column, const std::string& name,
                     const std::string& source) {
-  Plot plot;
-  plot.name = column.name + "_" + name;
-  plot.title = (column.name == "force" ? "Force of " : "Torque of ") + source + " on " + name +
-               ", body frame";
-  plot.x_label = angle_names(table).polar + " [deg]";
-  plot.y_label = column.name + " [" + column.unit + "]";
+  Plot plot{column.name + "_" + name,
+            (column.name == "force" ? "Force of " : "Torque of ") + source + " on " + name +
+                ", body frame",
+            angle_names(table).polar + " [deg]", column.name + " [" + column.unit + "]"};
   for (int axis = 0; axis < 3; ++axis) {
-    Plot::Curve curve;
-    curve.label = letter(axis);
+    Plot::Curve curve{letter(axis)};
     for (size_t polar = 0; polar < table.polar_rad.size(); ++polar) {
       curve.x.push_back(stated_deg(table.polar_rad[polar]));
       curve.y.push_back((*column.value)[polar][axis]);

@@ -66,15 +66,11 @@ struct LineRange {
   int first = std::numeric_limits<int>::max();
   int last = 0;
   void add(const SettingsNode& node) {
-    if (node.where.line > 0) {
-      first = std::min(first, node.where.line);
-      last = std::max(last, node.where.line);
-    }
-    if (const auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
-      for (const auto& [key, item] : *table) add(item);
-    } else if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
-      for (const SettingsNode& item : *items) add(item);
-    }
+    for_each_node(node, [this](const SettingsNode& one) {
+      if (one.where.line <= 0) return;
+      first = std::min(first, one.where.line);
+      last = std::max(last, one.where.line);
+    });
   }
 };
 

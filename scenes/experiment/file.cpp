@@ -215,22 +215,9 @@ std::optional<CadConventions> read_cad_conventions(const Settings& scene,
 }  // namespace
 
 std::vector<Settings> ExperimentFile::others(const std::string& key) const {
-  std::vector<Settings> all;
-  if (!settings.has(key)) return all;
-  const SettingsNode& node = settings.raw(key);
-  if (node.is_table()) {
-    all.emplace_back(node, key);
-  } else if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (size_t i = 0; i < items->size(); ++i) {
-      const SettingsNode& item = (*items)[i];
-      const std::string name = key + "[" + std::to_string(i) + "]";
-      if (!item.is_table()) throw InputError(item.where, name, describe(item), "a table");
-      all.emplace_back(item, name);
-    }
-  } else {
-    throw settings.error(key, describe(node), "a table [" + key + "]");
-  }
-  return all;
+  if (!settings.has(key)) return {};
+  // A separate root, because the reader checks that all keys of these tables are known.
+  return Settings(SettingsNode{SettingsNode::Table{{key, settings.raw(key)}}}).tables(key);
 }
 
 ExperimentFile read_experiment_file(const std::filesystem::path& path,

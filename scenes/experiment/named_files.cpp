@@ -31,20 +31,6 @@ std::string json_of(const fs::path& path, const std::string& bytes) {
   return bytes.substr(glb_head, little_endian_32(bytes, 12));
 }
 
-void collect_from(const SettingsNode& node, const fs::path& folder, std::set<fs::path>& files) {
-  if (const auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
-    for (const auto& [key, item] : *table) collect_from(item, folder, files);
-  } else if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (const SettingsNode& item : *items) collect_from(item, folder, files);
-  } else if (const auto* text = std::get_if<std::string>(&node.value)) {
-    const fs::path file = named_file(folder, *text);
-    if (file.empty() || !files.insert(fs::absolute(file).lexically_normal()).second) return;
-    for (const fs::path& one : files_named_in(file, read_file(file))) {
-      files.insert(fs::absolute(one).lexically_normal());
-    }
-  }
-}
-
 }  // namespace
 
 fs::path named_file(const fs::path& folder, const std::string& text) {
@@ -92,7 +78,14 @@ void name_files_from(SettingsNode& node, const fs::path& from, const fs::path& t
 
 std::set<fs::path> all_named_files(const SettingsNode& root, const fs::path& folder) {
   std::set<fs::path> files;
-  collect_from(root, folder, files);
+  for_each_node(root, [&](const SettingsNode& node) {
+    const auto* text = std::get_if<std::string>(&node.value);
+    const fs::path file = text != nullptr ? named_file(folder, *text) : fs::path();
+    if (file.empty() || !files.insert(fs::absolute(file).lexically_normal()).second) return;
+    for (const fs::path& one : files_named_in(file, read_file(file))) {
+      files.insert(fs::absolute(one).lexically_normal());
+    }
+  });
   return files;
 }
 

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <sstream>
 
-#include "core/files.h"
 #include "core/text/parse.h"
 
 namespace photorque {
@@ -167,13 +166,8 @@ SettingsNode value_of(const std::string& text, const std::string& key) {
   return node;
 }
 
-void locate_on_command_line(SettingsNode& node) {
-  node.where = command_line;
-  if (auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (auto& item : *array) locate_on_command_line(item);
-  } else if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
-    for (auto& [key, item] : *table) locate_on_command_line(item);
-  }
+void locate_on_command_line(SettingsNode& root) {
+  for_each_node(root, [](SettingsNode& node) { node.where = command_line; });
 }
 
 // The item to which one step leads; creates a new key of a table.
@@ -283,11 +277,6 @@ std::vector<TomlComment> toml_comments(const std::string& text) {
     has_value = has_value || std::string_view(" \t\r\n#").find(c) == std::string_view::npos;
   });
   return comments;
-}
-
-SettingsNode read_toml(const std::filesystem::path& path) {
-  constexpr uint64_t largest_bytes = 1ull << 26;
-  return parse_toml(read_file(path, largest_bytes), path.string());
 }
 
 void apply_override(SettingsNode& root, const std::string& assignment) {

@@ -2,7 +2,6 @@
 // TOML.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -13,9 +12,6 @@ namespace photorque {
 // The tree of a TOML document. Messages call it `name`; every value stores its line. Dates and
 // times become their ISO 8601 text. Throws InputError with the line of a syntax error.
 SettingsNode parse_toml(const std::string& text, const std::string& name);
-
-// Reads a file.
-SettingsNode read_toml(const std::filesystem::path& path);
 
 // A comment of a TOML text.
 struct TomlComment {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/constants.h"
 #include "core/numerics/quadrature.h"

@@ -1,7 +1,6 @@
 // Only its own file names a kind of disturbance: others use its properties.
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <map>
 #include <regex>
 #include <set>

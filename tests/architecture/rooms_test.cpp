@@ -348,7 +348,7 @@ TEST(Rooms, InterfacesAreThoseOfThePageWithAtMostThreeVirtualFunctions) {
 // No value of settings is multiplied by a factor of units.
 TEST(Rooms, UnitsOfKeysAreConvertedInSettingsAlone) {
   static const std::regex converted(
-      R"(\b(number|number_or|numbers|uncertain|vector3|vector3_or|get|get_or)\s*\([^;]*\)\s*[*/]\s*)"
+      R"(\b(number|number_or|numbers|uncertain|vector3|get|get_or)\s*\([^;]*\)\s*[*/]\s*)"
       R"((1e-?\d|0\.0*1\b|10+(\.0)?\b|3600|60(\.0)?\b|degree_rad|arcsecond_rad|pi\b))");
   for (const fs::path& file : all_sources()) {
     if (lies_in(room_of(file), "core/settings")) continue;

@@ -26,7 +26,7 @@ double yaw_rate_rad_s(const AttitudeModel& model, double time_s) {
 TEST(ActuatorLatency, ATorqueActsLater) {
   for (const double latency_s : {0.1, 0.3, 2.0, 5.0}) {
     const AttitudeModel model =
-        with(commanded(), "actuator_latency", {{"latency_s", node(latency_s)}});
+        with(commanded(), "actuator_latency", "latency_s = " + toml(latency_s));
     for (const double time_s : {0.9, 1.05, 2.0, 3.7, 4.1, 7.0, 9.5}) {
       const double acted_s = std::clamp(time_s - 1.0 - latency_s, 0.0, 3.0);
       EXPECT_NEAR(yaw_rate_rad_s(model, time_s), 1e-3 * acted_s, 1e-15) << latency_s << time_s;
@@ -37,8 +37,8 @@ TEST(ActuatorLatency, ATorqueActsLater) {
 
 // The battery's current is no command, and several delays add up.
 TEST(ActuatorLatency, DelaysAddUpAndCurrentsDoNotWait) {
-  AttitudeModel model = with(commanded(), "actuator_latency", {{"latency_s", node(0.2)}});
-  model = with(model, "actuator_latency", {{"latency_ms", node(300.0)}});
+  AttitudeModel model = with(commanded(), "actuator_latency", "latency_s = 0.2");
+  model = with(model, "actuator_latency", "latency_ms = 300.0");
   EXPECT_NEAR(yaw_rate_rad_s(model, 2.0), 0.5e-3, 1e-15);
   const PlatformState end = propagated(model, state_of(model, Quat::Identity()), 2.0);
   EXPECT_NEAR(end.charge_drawn_C, 3.0, 1e-12);
@@ -47,7 +47,7 @@ TEST(ActuatorLatency, DelaysAddUpAndCurrentsDoNotWait) {
 // A recording holds commands when they were given, so that a model with this latency explains it.
 TEST(ActuatorLatency, RecordingsHoldTheCommandsAsGiven) {
   PropagationRun run;
-  run.model = with(commanded(), "actuator_latency", {{"latency_s", node(0.5)}});
+  run.model = with(commanded(), "actuator_latency", "latency_s = 0.5");
   run.initial = state_of(run.model, Quat::Identity());
   run.duration_s = 3.0;
   run.output_rate_Hz = 20.0;
@@ -73,7 +73,7 @@ TEST(ActuatorLatency, NoCommandIsLostByRounding) {
     sum_N_m_s += 0.1 * torque_N_m;
   }
   model.schedule.append(0.1 * steps, {});
-  model = with(model, "actuator_latency", {{"latency_s", node(0.07)}});
+  model = with(model, "actuator_latency", "latency_s = 0.07");
   EXPECT_NEAR(0.2 * yaw_rate_rad_s(model, 0.1 * steps + 1.0), sum_N_m_s, 1e-15);
 }
 

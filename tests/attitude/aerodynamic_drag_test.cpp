@@ -48,16 +48,14 @@ TEST(Thermosphere, AltitudesAreAboveTheEllipsoid) {
 
 AttitudeModel in_orbit(double inclination_deg, double phase_deg) {
   return with(bench_model(), "orbit",
-              {{"altitude_m", node(400e3)},
-               {"inclination_deg", node(inclination_deg)},
-               {"phase_deg", node(phase_deg)}});
+              "altitude_m = 400e3, inclination_deg = " + toml(inclination_deg) +
+                  ", phase_deg = " + toml(phase_deg));
 }
 
 Vec3 drag_N_m(const AttitudeModel& in_orbit, const Quat& attitude, double time_s,
-              std::vector<std::pair<std::string, SettingsNode>> entries) {
-  const std::string path = sphere_table();
-  entries.emplace_back("table", node(path.c_str()));
-  const AttitudeModel model = with(in_orbit, "aerodynamic_drag", entries);
+              const std::string& further_keys = "") {
+  const AttitudeModel model =
+      with(in_orbit, "aerodynamic_drag", "table = " + toml(sphere_table()) + further_keys);
   return torque_body_N_m(model, attitude, Vec3::Zero(), time_s);
 }
 
@@ -75,8 +73,8 @@ TEST(AerodynamicDrag, TheAtmosphereTurnsWithTheEarth) {
     const Quat attitude = turned(1.2, Vec3(1, -2, 3));
     const Vec3 expected = 0.5 * density * wind.squaredNorm() *
                           sphere_table_torque_N_m(attitude.inverse() * wind.normalized());
-    const Vec3 found =
-        drag_N_m(in_orbit(inclination_deg, 0.0), attitude, 0.0, {{"density_kg_m3", node(density)}});
+    const Vec3 found = drag_N_m(in_orbit(inclination_deg, 0.0), attitude, 0.0,
+                                ", density_kg_m3 = " + toml(density));
     EXPECT_LT((found - expected).norm(), 1e-4 * expected.norm()) << inclination_deg;
     EXPECT_GT((found - 0.9 * expected).norm(), 0.05 * expected.norm());
   }
@@ -89,8 +87,8 @@ TEST(AerodynamicDrag, TheMeanAtmosphereFollowsTheAltitude) {
   const Quat attitude = turned(0.4, Vec3(0, 1, 1));
   const auto over_stated = [&](double phase_deg) {
     const AttitudeModel model = in_orbit(90.0, phase_deg);
-    return drag_N_m(model, attitude, 0.0, {}).norm() /
-           drag_N_m(model, attitude, 0.0, {{"density_kg_m3", node(1.0)}}).norm();
+    return drag_N_m(model, attitude, 0.0).norm() /
+           drag_N_m(model, attitude, 0.0, ", density_kg_m3 = 1.0").norm();
   };
   EXPECT_NEAR(over_stated(0.0), atmosphere.at(6771.2e3 - 6378137.0)[0], 1e-3 * over_stated(0.0));
   EXPECT_NEAR(over_stated(90.0), atmosphere.at(6771.2e3 - 6356752.3)[0], 1e-3 * over_stated(90.0));
@@ -101,17 +99,17 @@ TEST(AerodynamicDrag, ReadsADensityOverTime) {
   const auto path = test_file("density.csv", "t_s,density_kg_m3\n0,1e-12\n100,3e-12\n");
   const AttitudeModel model = in_orbit(51.0, 20.0);
   const Quat attitude = turned(0.4, Vec3(0, 1, 1));
-  const Vec3 file = drag_N_m(model, attitude, 50.0, {{"density_file", node(path.c_str())}});
-  const Vec3 number = drag_N_m(model, attitude, 50.0, {{"density_kg_m3", node(2e-12)}});
+  const Vec3 file = drag_N_m(model, attitude, 50.0, ", density_file = " + toml(path));
+  const Vec3 number = drag_N_m(model, attitude, 50.0, ", density_kg_m3 = 2e-12");
   EXPECT_LT((file - number).norm(), 1e-12 * number.norm());
-  EXPECT_THROW(drag_N_m(model, attitude, 50.0,
-                        {{"density_file", node(path.c_str())}, {"density_kg_m3", node(1e-12)}}),
-               InputError);
+  EXPECT_THROW(
+      drag_N_m(model, attitude, 50.0, ", density_file = " + toml(path) + ", density_kg_m3 = 1e-12"),
+      InputError);
 }
 
 // On the ground there is no orbit.
 TEST(AerodynamicDrag, NeedsAnOrbit) {
-  EXPECT_EQ(drag_N_m(bench_model(), Quat::Identity(), 0.0, {}).norm(), 0.0);
+  EXPECT_EQ(drag_N_m(bench_model(), Quat::Identity(), 0.0).norm(), 0.0);
 }
 
 }  // namespace

@@ -26,18 +26,17 @@ std::vector<MovingMass> masses() {
 
 // The model with a load of 30 W, whose battery displaces the centre of mass.
 AttitudeModel draining(const AttitudeModel& model) {
-  const AttitudeModel loaded = with(model, "power_balance", {{"load_W", node(30.0)}});
-  return with(loaded, "battery_discharge", {{"shift_m_per_Ah", numbers({1e-5, 0, 0})}});
+  const AttitudeModel loaded = with(model, "power_balance", "load_W = 30.0");
+  return with(loaded, "battery_discharge", "shift_m_per_Ah = [1e-5, 0, 0]");
 }
 
 // Ten minutes of an unbalanced tabletop with drag and a biased gyro, measured by the contract's
 // sensors, and its nominal model: no unbalance; drag and bias within their uncertainty.
 BalanceRun unbalanced(bool with_gyro, uint64_t seed, bool drains = false) {
-  const SettingsNode offset = numbers({true_offset_m[0], true_offset_m[1], true_offset_m[2]});
   PropagationRun truth;
-  truth.model = with(bench_model(), "static_unbalance", {{"offset_m", offset}});
-  truth.model = with(truth.model, "bearing_drag", {{"coefficient_N_m_s", node(1.5e-5)}});
-  truth.model = with(truth.model, "gyro_bias", {{"bias_rad_s", numbers({1e-3, -5e-4, 2e-4})}});
+  truth.model = with(bench_model(), "static_unbalance", "offset_m = " + toml(true_offset_m));
+  truth.model = with(truth.model, "bearing_drag", "coefficient_N_m_s = 1.5e-5");
+  truth.model = with(truth.model, "gyro_bias", "bias_rad_s = [1e-3, -5e-4, 2e-4]");
   if (drains) truth.model = draining(truth.model);
   truth.model.schedule.append(100.0, {.command_body_N_m = {2e-4, 0, 1e-4}});
   truth.model.schedule.append(110.0, {});
@@ -51,12 +50,10 @@ BalanceRun unbalanced(bool with_gyro, uint64_t seed, bool drains = false) {
   truth.initial = state_of(truth.model, turned(0.2, {1, 1, 0}), {0.01, -0.01, 0.1});
 
   BalanceRun run;
-  run.model = with(bench_model(), "bearing_drag",
-                   {{"coefficient_N_m_s", table({{"value", node(1e-5)}, {"sigma", node(1e-5)}})}});
   run.model =
-      with(run.model, "gyro_bias",
-           {{"bias_rad_s",
-             table({{"value", numbers({0, 0, 0})}, {"sigma", numbers({1e-3, 1e-3, 1e-3})}})}});
+      with(bench_model(), "bearing_drag", "coefficient_N_m_s = {value = 1e-5, sigma = 1e-5}");
+  run.model =
+      with(run.model, "gyro_bias", "bias_rad_s = {value = [0, 0, 0], sigma = [1e-3, 1e-3, 1e-3]}");
   if (drains) run.model = draining(run.model);
   run.sensors = truth.sensors;
   run.masses = masses();
@@ -100,10 +97,8 @@ TEST(Balance, AMissingEffectIsReportedAndIncreasesTheErrors) {
   BalanceRun run = unbalanced(true, 7);
   EXPECT_FALSE(balance(run).exceeds_noise());
   PropagationRun truth;
-  truth.model =
-      with(bench_model(), "static_unbalance",
-           {{"offset_m", numbers({true_offset_m[0], true_offset_m[1], true_offset_m[2]})}});
-  truth.model = with(truth.model, "magnetic_dipole", {{"dipole_A_m2", numbers({0.2, 0, 0.1})}});
+  truth.model = with(bench_model(), "static_unbalance", "offset_m = " + toml(true_offset_m));
+  truth.model = with(truth.model, "magnetic_dipole", "dipole_A_m2 = [0.2, 0, 0.1]");
   truth.sensors = run.sensors;
   truth.duration_s = 600.0;
   truth.output_rate_Hz = 10.0;

@@ -119,33 +119,22 @@ TEST(BearingComparison, FindsTheErrorsPutIn) {
   EXPECT_NEAR(c.drag_ratio, 20.0, 1e-12);
 }
 
-using Entries = std::vector<std::pair<std::string, SettingsNode>>;
-
-// An experiment with five torques and `more` disturbances.
-SettingsNode experiment(const Entries& budget, const std::vector<SettingsNode>& more = {}) {
-  std::vector<SettingsNode> all = {
-      table({{"kind", node("turbine_torque")}, {"torque_N_m", node(1.9e-6)}}),
-      table({{"kind", node("static_unbalance")}, {"offset_m", numbers({1e-6, 0, 0})}}),
-      table({{"kind", node("static_unbalance")}, {"offset_m", numbers({0, 1e-7, 0})}}),
-      table({{"kind", node("battery_discharge")}, {"shift_m_per_Ah", numbers({0, 1e-6, 0})}}),
-      table({{"kind", node("air_friction")}, {"coefficient", node(3e-5)}})};
-  all.insert(all.end(), more.begin(), more.end());
-  return table({{"platform",
-                 table({{"topology", node("tabletop")},
-                        {"mass_kg", node(7)},
-                        {"inertia_kg_m2",
-                         list({numbers({0.1, 0, 0}), numbers({0, 0.1, 0}), numbers({0, 0, 0.19})})},
-                        {"battery_capacity_Ah", node(2.4)}})},
-                {"disturbance", list(all)},
-                {"budget", table(budget)}});
-}
-
-Budget budget_of(const Entries& budget, const std::vector<SettingsNode>& more = {}) {
-  return read_budget(settings_of(experiment(budget, more)));
+// The budget of an experiment with five torques and a further disturbance.
+Budget budget_of(const std::string& budget, const std::string& disturbance = "",
+                 const std::string& battery = "battery_capacity_Ah = 2.4") {
+  return read_budget(settings_of(
+      "platform = {topology = 'tabletop', mass_kg = 7, inertia_kg_m2 = [[0.1, 0, 0], [0, 0.1, "
+      "0], [0, 0, 0.19]], " +
+      battery +
+      "}, disturbance = [{kind = 'turbine_torque', torque_N_m = 1.9e-6}, "
+      "{kind = 'static_unbalance', offset_m = [1e-6, 0, 0]}, {kind = 'static_unbalance', "
+      "offset_m = [0, 1e-7, 0]}, {kind = 'battery_discharge', shift_m_per_Ah = [0, 1e-6, 0]}, "
+      "{kind = 'air_friction', coefficient = 3e-5}" +
+      (disturbance.empty() ? "" : ", {" + disturbance + "}") + "], budget = {" + budget + "}"));
 }
 
 TEST(Budget, RanksTorquesAndAddsUpAngles) {
-  const Budget budget = budget_of({{"state_of_charge", node(0.5)}, {"spin_rpm", node(1)}});
+  const Budget budget = budget_of("state_of_charge = 0.5, spin_rpm = 1");
   ASSERT_EQ(budget.entries.size(), 5u);
   for (size_t i = 1; i < budget.entries.size(); ++i) {
     EXPECT_GE(budget.entries[i - 1].torque_body_N_m.norm(),
@@ -175,10 +164,9 @@ BudgetEntry entry(const Budget& budget, const std::string& name) {
 // The torque is m r a for an acceleration of the floor along x, although the sine is zero at the
 // time of the state. The oscillation does not accumulate an angle.
 TEST(Budget, VibrationCountsWithItsAmplitude) {
-  const SettingsNode floor = table({{"kind", node("floor_vibration")},
-                                    {"acceleration_m_s2", numbers({2e-3, 0, 0})},
-                                    {"frequency_Hz", node(8)}});
-  const BudgetEntry vibration = entry(budget_of({}, {floor}), "floor_vibration");
+  const std::string floor =
+      "kind = 'floor_vibration', acceleration_m_s2 = [2e-3, 0, 0], frequency_Hz = 8";
+  const BudgetEntry vibration = entry(budget_of("", floor), "floor_vibration");
   EXPECT_NEAR(vibration.torque_body_N_m.norm(), 7 * 1e-7 * 2e-3, 7e-10 * 0.001);
   EXPECT_LT(vibration.angle_after_minute_rad, 1e-10);
 }
@@ -187,30 +175,27 @@ TEST(Budget, VibrationCountsWithItsAmplitude) {
 // about z: −ω × δI ω, along y.
 TEST(Budget, ChangesOfConditionsCountByTheirEffect) {
   const double tilt_rad = 1e-3, delta_kg_m2 = 2e-3, rate_rad_s = 2 * pi / 60;
-  const SettingsNode gravity =
-      table({{"kind", node("gravity_tilt")}, {"tilt_rad", numbers({tilt_rad, 0})}});
-  const SettingsNode inertia = table(
-      {{"kind", node("inertia_error")}, {"delta_kg_m2", numbers({0, 0, 0, 0, delta_kg_m2, 0})}});
+  const std::string gravity = "kind = 'gravity_tilt', tilt_rad = [" + toml(tilt_rad) + ", 0]",
+                    inertia = "kind = 'inertia_error', delta_kg_m2 = [0, 0, 0, 0, " +
+                              toml(delta_kg_m2) + ", 0]";
   const Vec3 offset_m(1e-6, 1e-7, 0);
   const Vec3 change_m_s2 =
       standard_gravity_m_s2 * Vec3(0, std::sin(tilt_rad), 1 - std::cos(tilt_rad));
-  const Budget leaning = budget_of({}, {gravity});
+  const Budget leaning = budget_of("", gravity);
   EXPECT_LT(
       (entry(leaning, "gravity_tilt").torque_body_N_m - 7 * offset_m.cross(change_m_s2)).norm(),
       1e-15);
-  const Budget spinning = budget_of({{"spin_rpm", node(1)}}, {inertia});
+  const Budget spinning = budget_of("spin_rpm = 1", inertia);
   EXPECT_NEAR(std::abs(entry(spinning, "inertia_error").torque_body_N_m.y()),
               delta_kg_m2 * rate_rad_s * rate_rad_s, 1e-12);
 }
 
 // An appendage without deflection that rotates with the body has no torque.
 TEST(Budget, AnUnbentAppendageIsNoTorque) {
-  const SettingsNode wing = table({{"kind", node("flexible_mode")},
-                                   {"axis", numbers({1, 0, 0})},
-                                   {"frequency_Hz", node(1)},
-                                   {"damping", node(0.02)},
-                                   {"inertia_kg_m2", node(0.001)}});
-  const Budget budget = budget_of({{"tilt_deg", node(30)}, {"spin_rpm", node(1)}}, {wing});
+  const Budget budget =
+      budget_of("tilt_deg = 30, spin_rpm = 1",
+                "kind = 'flexible_mode', axis = [1, 0, 0], frequency_Hz = 1, damping = 0.02, "
+                "inertia_kg_m2 = 0.001");
   EXPECT_EQ(entry(budget, "flexible_mode").torque_body_N_m.norm(), 0.0);
   const Product product = budget_product(budget);
   for (const Plot::Curve& curve : product.plots.front().curves) {
@@ -219,10 +204,8 @@ TEST(Budget, AnUnbentAppendageIsNoTorque) {
 }
 
 TEST(Budget, StateIsTiltHeadingAndRate) {
-  const Budget budget = budget_of({{"tilt_deg", node(30)},
-                                   {"heading_deg", node(90)},
-                                   {"spin_rpm", node(2)},
-                                   {"charge_drawn_Ah", node(1)}});
+  const Budget budget =
+      budget_of("tilt_deg = 30, heading_deg = 90, spin_rpm = 2, charge_drawn_Ah = 1");
   const Vec3 up = budget.state.lab_from_body * Vec3::UnitZ();
   EXPECT_LT((up - Vec3(0, 0.5, std::cos(pi / 6))).norm(), 1e-12);
   EXPECT_LT(
@@ -232,8 +215,7 @@ TEST(Budget, StateIsTiltHeadingAndRate) {
 }
 
 TEST(Budget, ProductHoldsTheTablesAndPlots) {
-  const Budget budget = budget_of(
-      {{"tilt_deg", node(10)}, {"spin_rpm", node(1)}, {"light", table({{"power_W", node(25.8)}})}});
+  const Budget budget = budget_of("tilt_deg = 10, spin_rpm = 1, light = {power_W = 25.8}");
   const Product product = budget_product(budget);
   const Table& ranked = table_named(product, "budget");
   EXPECT_EQ(ranked.column("disturbance").texts.size(), 5u);
@@ -254,10 +236,8 @@ TEST(Budget, ProductHoldsTheTablesAndPlots) {
 
 // A disc of 0.2 m at 1 rpm: R²ω/ν = 278, far below its transition at 2.8e5.
 TEST(Budget, ReportsTheValidityOfTheAirLawsForEveryPart) {
-  const SettingsNode friction =
-      table({{"kind", node("air_friction")},
-             {"part", list({table({{"shape", node("disc")}, {"radius_m", node(0.2)}})})}});
-  const Product product = budget_product(budget_of({{"spin_rpm", node(1)}}, {friction}));
+  const Product product = budget_product(budget_of(
+      "spin_rpm = 1", "kind = 'air_friction', part = [{shape = 'disc', radius_m = 0.2}]"));
   const Table& air = table_named(product, "external_air");
   EXPECT_NEAR(air.column("reynolds").values.front(), 278.0, 1.0);
   EXPECT_EQ(air.column("law_holds").texts.front(), "yes");
@@ -274,42 +254,28 @@ TEST(Budget, FigureFive) {
 }
 
 TEST(Budget, RefusesAStateOfChargeWithoutABattery) {
-  SettingsNode root = experiment({{"state_of_charge", node(0.5)}});
-  auto& platform =
-      std::get<SettingsNode::Table>(std::get<SettingsNode::Table>(root.value).at("platform").value);
-  platform.erase("battery_capacity_Ah");
-  EXPECT_THROW(read_budget(settings_of(root)), InputError);
-  EXPECT_THROW(budget_of({{"tilt", node(3)}}), InputError);
+  EXPECT_THROW(budget_of("state_of_charge = 0.5", "", "tilt_limit_deg = 40"), InputError);
+  EXPECT_THROW(budget_of("tilt = 3"), InputError);
 }
 
 TEST(Budget, RefusesChargesThatCannotBeMeant) {
-  for (const auto& charge :
-       std::vector<Entries>{{{"state_of_charge", node(0.5)}, {"charge_drawn_Ah", node(1)}},
-                            {{"charge_drawn_Ah", node(2.5)}}}) {
-    EXPECT_THROW(budget_of(charge), InputError);
-  }
-  EXPECT_NO_THROW(budget_of({{"charge_drawn_Ah", node(2.4)}}));
+  EXPECT_THROW(budget_of("state_of_charge = 0.5, charge_drawn_Ah = 1"), InputError);
+  EXPECT_THROW(budget_of("charge_drawn_Ah = 2.5"), InputError);
+  EXPECT_NO_THROW(budget_of("charge_drawn_Ah = 2.4"));
 }
 
 // The power (40 deg/1 deg)^200 overflows.
 TEST(Budget, RefusesATorqueThatIsNoNumber) {
-  const SettingsNode law = table({{"kind", node("empirical_torque")},
-                                  {"axes", list({node("lean")})},
-                                  {"tilt_powers", numbers({200})},
-                                  {"tilt_reference_deg", node(1)},
-                                  {"coefficients_N_m", numbers({1})}});
-  EXPECT_THROW(budget_of({{"tilt_deg", node(40)}}, {law}), NumericalError);
+  EXPECT_THROW(budget_of("tilt_deg = 40",
+                         "kind = 'empirical_torque', axes = ['lean'], tilt_powers = [200], "
+                         "tilt_reference_deg = 1, coefficients_N_m = [1]"),
+               NumericalError);
 }
 
 TEST(Budget, ComparesACatalogue) {
-  const SettingsNode bearing = table({{"name", node("x")},
-                                      {"radius_mm", node(30)},
-                                      {"half_angle_deg", node(45)},
-                                      {"gap_um", node(5)},
-                                      {"inlet_bar", node(5)},
-                                      {"load_N", node(300)},
-                                      {"drag_N_m", node(1e-4)}});
-  const Product product = budget_product(budget_of({{"bearing", list({bearing})}}));
+  const Product product =
+      budget_product(budget_of("bearing = [{name = 'x', radius_mm = 30, half_angle_deg = 45, "
+                               "gap_um = 5, inlet_bar = 5, load_N = 300, drag_N_m = 1e-4}]"));
   const double expected = std::abs(load_capacity_N({0.03, pi / 4, 5e-6}, 5e5, 101325.0) / 300 - 1);
   const Quantity* error = find_quantity(product, "bearing_load_mean_error");
   ASSERT_NE(error, nullptr);

@@ -11,8 +11,7 @@ namespace photorque {
 namespace {
 
 PropagationRun run_of(const std::string& toml) {
-  return read_propagation(
-      Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "run.toml"))));
+  return read_propagation(Settings(parse_toml(toml, "run.toml")));
 }
 
 // Sensors with latency, drift and pauses; commands; a cable; an appendage with extra states.

@@ -36,14 +36,10 @@ TEST(CurrentLoop, DipoleIsTheMomentOfItsCurrent) {
 
 TEST(CurrentLoop, SettingsTakeAreasOrCorners) {
   const std::vector<CurrentLoop> loops = read_current_loops(
-      {settings_of(table(
-           {{"current_A", node(2)}, {"turns", node(10)}, {"area_m2", numbers({0, 0, 0.01})}})),
-       settings_of(table(
-           {{"current_A", node(-1)},
-            {"corners_m", list({numbers({0, 0, 0}), numbers({0, 1, 0}), numbers({0, 0, 1})})}}))});
+      {settings_of("current_A = 2, turns = 10, area_m2 = [0, 0, 0.01]"),
+       settings_of("current_A = -1, corners_m = [[0, 0, 0], [0, 1, 0], [0, 0, 1]]")});
   EXPECT_LT((dipole_A_m2(loops) - Vec3(-0.5, 0, 0.2)).norm(), 1e-15);
-  const Settings two = settings_of(table(
-      {{"current_A", node(1)}, {"corners_m", list({numbers({0, 0, 0}), numbers({0, 1, 0})})}}));
+  const Settings two = settings_of("current_A = 1, corners_m = [[0, 0, 0], [0, 1, 0]]");
   EXPECT_THROW(read_current_loops({two}), InputError);
 }
 

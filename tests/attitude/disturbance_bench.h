@@ -51,11 +51,11 @@ inline DisturbanceContext context_of(const AttitudeModel& model) {
   return {model.platform, model.environment, &bench_camera()};
 }
 
+// A disturbance with its keys as TOML: "offset_m = [1e-6, 0, 0], scale = 2".
 inline Disturbance make(const AttitudeModel& model, const std::string& kind,
-                        const std::vector<std::pair<std::string, SettingsNode>>& entries) {
-  std::vector<std::pair<std::string, SettingsNode>> all = entries;
-  all.emplace_back("kind", node(kind.c_str()));
-  const Settings settings = settings_of(table(all));
+                        const std::string& keys = "") {
+  const Settings settings =
+      settings_of("kind = '" + kind + "'" + (keys.empty() ? "" : ", ") + keys);
   Disturbance disturbance = read_disturbance(settings, context_of(model));
   settings.finish();
   return disturbance;
@@ -63,8 +63,8 @@ inline Disturbance make(const AttitudeModel& model, const std::string& kind,
 
 // The model with one more disturbance.
 inline AttitudeModel with(AttitudeModel model, const std::string& kind,
-                          const std::vector<std::pair<std::string, SettingsNode>>& entries) {
-  model.disturbances.push_back(make(model, kind, entries));
+                          const std::string& keys = "") {
+  model.disturbances.push_back(make(model, kind, keys));
   return model;
 }
 

@@ -10,25 +10,23 @@ namespace photorque {
 namespace {
 
 TEST(Disturbances, UnknownKindIsOneClearLine) {
-  EXPECT_THAT(refusal_of([&] { make(bench_model(), "bearing_drug", {}); }),
+  EXPECT_THAT(refusal_of([&] { make(bench_model(), "bearing_drug"); }),
               testing::HasSubstr("bearing_drag"));
 }
 
 // A disturbance that sets the field, the rotation of the laboratory or the battery current for all
 // others may be used only once.
 TEST(Disturbances, ThatSetTheSameForAllAreRefusedTwice) {
-  const SettingsNode cage = table({{"kind", node("helmholtz_cage")},
-                                   {"field_lab_T", numbers({1e-5, 0, 0})}}),
-                     orbit = table({{"kind", node("orbit")},
-                                    {"altitude_m", node(5e5)},
-                                    {"inclination_deg", node(50)}}),
-                     rotation = table({{"kind", node("earth_rotation")}}),
-                     load = table({{"kind", node("power_balance")}, {"load_W", node(10)}});
+  const std::string cage = "{kind = 'helmholtz_cage', field_lab_T = [1e-5, 0, 0]}",
+                    orbit = "{kind = 'orbit', altitude_m = 5e5, inclination_deg = 50}",
+                    rotation = "{kind = 'earth_rotation'}",
+                    load = "{kind = 'power_balance', load_W = 10}";
   const AttitudeModel model = bench_model();
-  const auto read = [&](const std::vector<SettingsNode>& all) {
-    return read_disturbances(settings_of(table({{"disturbance", list(all)}})), context_of(model));
+  const auto read = [&](const std::vector<std::string>& all) {
+    return read_disturbances(settings_of("disturbance = [" + joined_text(all, ", ") + "]"),
+                             context_of(model));
   };
-  for (const auto& pair : std::vector<std::vector<SettingsNode>>{
+  for (const auto& pair : std::vector<std::vector<std::string>>{
            {cage, cage}, {cage, orbit}, {orbit, cage}, {rotation, rotation}, {load, load}}) {
     EXPECT_THROW(read(pair), InputError);
   }

@@ -88,9 +88,8 @@ TEST(Commands, AreHitExactly) {
 }
 
 TEST(Propagation, IsTheSameToTheBitWhateverIsAskedOfIt) {
-  AttitudeModel model =
-      with(bench_model(), "static_unbalance", {{"offset_m", numbers({1e-5, 0, -1e-4})}});
-  model = with(model, "air_friction", {{"coefficient", node(1e-4)}});
+  AttitudeModel model = with(bench_model(), "static_unbalance", "offset_m = [1e-5, 0, -1e-4]");
+  model = with(model, "air_friction", "coefficient = 1e-4");
   const Dynamics dynamics(model);
   const PlatformState start = state_of(model, turned(0.3, {1, 2, 0}), {0.02, 0.01, 0.1});
   std::vector<double> sparse = {50.0, 300.0}, fine;
@@ -103,8 +102,7 @@ TEST(Propagation, IsTheSameToTheBitWhateverIsAskedOfIt) {
 }
 
 TEST(Propagation, FallsByTheToleranceAsked) {
-  AttitudeModel model =
-      with(bench_model(), "static_unbalance", {{"offset_m", numbers({1e-5, 0, -3e-4})}});
+  AttitudeModel model = with(bench_model(), "static_unbalance", "offset_m = [1e-5, 0, -3e-4]");
   const PlatformState start = state_of(model, turned(0.5, {1, 2, 0}), {0.02, 0.01, 0.1});
   const PlatformState best = propagated(model, start, 600.0, 1e-13);
   for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
@@ -171,10 +169,8 @@ TEST(Eclipse, SunlitFractionMatchesTheReferenceCases) {
 // opposite to the Sun. The events are at half light, when the Sun's centre is on the horizon.
 TEST(Eclipse, LastsAsLongAsTheShadowIsWide) {
   AttitudeModel model = commanded(1.0, Vec3::Zero());
-  model = with(model, "orbit",
-               {{"altitude_m", node(500e3)},
-                {"inclination_deg", node(0.0)},
-                {"sun_direction", numbers({1, 0, 0})}});
+  model =
+      with(model, "orbit", "altitude_m = 500e3, inclination_deg = 0.0, sun_direction = [1, 0, 0]");
   const Dynamics dynamics(model);
   const double radius_m = 6871.2e3, motion = std::sqrt(3.986004418e14 / std::pow(radius_m, 3));
   const double period_s = 2 * pi / motion, half_shadow_s = std::asin(6371.2 / 6871.2) / motion;

@@ -8,7 +8,6 @@
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/wrench.h"
 #include "tests/attitude/disturbance_bench.h"
 #include "tests/files.h"
 
@@ -19,7 +18,7 @@ namespace {
 TEST(MagneticDipole, IsDipoleCrossField) {
   AttitudeModel model = bench_model();
   model.environment.magnetic_field_lab_T = {0, 5e-5, 0};
-  model = with(model, "magnetic_dipole", {{"dipole_A_m2", numbers({0.1, 0, 0})}});
+  model = with(model, "magnetic_dipole", "dipole_A_m2 = [0.1, 0, 0]");
   const Vec3 torque = torque_body_N_m(model, Quat::Identity());
   EXPECT_LT((torque - Vec3(0, 0, 5e-6)).norm(), 1e-20);
 }
@@ -29,9 +28,7 @@ TEST(MagneticDipole, SwingsLikeACompass) {
   AttitudeModel model = bench_model();
   model.environment.magnetic_field_lab_T = {0, 2e-5, 0};
   model = with(model, "magnetic_dipole",
-               {{"loop", list({table({{"current_A", node(0.5)},
-                                      {"turns", node(20)},
-                                      {"area_m2", numbers({0, 0.01, 0})}})})}});
+               "loop = [{current_A = 0.5, turns = 20, area_m2 = [0, 0.01, 0]}]");
   const double half_period_s = pi * std::sqrt(0.19 / (0.1 * 2e-5));
   const PlatformState start = state_of(model, turned(1e-4, Vec3::UnitZ()));
   const PlatformState half = propagated(model, start, half_period_s);
@@ -40,34 +37,30 @@ TEST(MagneticDipole, SwingsLikeACompass) {
 
 TEST(HelmholtzCage, CancelsPlaysAndErrs) {
   const AttitudeModel base = bench_model();
-  const std::vector<std::pair<std::string, SettingsNode>> dipole = {
-      {"dipole_A_m2", numbers({0.02, 0.03, -0.01})}};
   const Vec3 m(0.02, 0.03, -0.01);
-  const auto torque = [&](const std::vector<std::pair<std::string, SettingsNode>>& cage, double t) {
-    const AttitudeModel model = with(with(base, "helmholtz_cage", cage), "magnetic_dipole", dipole);
+  const auto torque = [&](const std::string& cage, double t) {
+    const AttitudeModel model = with(with(base, "helmholtz_cage", cage), "magnetic_dipole",
+                                     "dipole_A_m2 = [0.02, 0.03, -0.01]");
     return torque_body_N_m(model, Quat::Identity(), Vec3::Zero(), t);
   };
-  EXPECT_LT(torque({}, 5).norm(), 1e-20);
+  EXPECT_LT(torque("", 5).norm(), 1e-20);
   const Vec3 uncancelled = m.cross(base.environment.magnetic_field_lab_T);
-  EXPECT_LT((torque({{"gain_error", node(-0.1)}}, 5) - 0.1 * uncancelled).norm(), 1e-20);
-  EXPECT_LT((torque({{"field_lab_uT", numbers({10, 0, 0})}}, 5) - m.cross(Vec3(1e-5, 0, 0))).norm(),
-            1e-20);
+  EXPECT_LT((torque("gain_error = -0.1", 5) - 0.1 * uncancelled).norm(), 1e-20);
+  EXPECT_LT((torque("field_lab_uT = [10, 0, 0]", 5) - m.cross(Vec3(1e-5, 0, 0))).norm(), 1e-20);
 
   const CircularOrbit orbit{.radius_m = 6371.2e3 + 500e3, .inclination_rad = 0.9};
   const Vec3 there_T = orbit_field_T(orbit, 2026.0, 6000, 20).at(1230.0);
-  const SettingsNode played = table({{"altitude_km", node(500)},
-                                     {"inclination_rad", node(0.9)},
-                                     {"date_year", node(2026)},
-                                     {"duration_s", node(6000)}});
-  EXPECT_LT((torque({{"orbit", played}}, 1230.0) - m.cross(there_T)).norm(), 1e-18);
+  const std::string played =
+      "orbit = {altitude_km = 500, inclination_rad = 0.9, date_year = 2026, duration_s = 6000}";
+  EXPECT_LT((torque(played, 1230.0) - m.cross(there_T)).norm(), 1e-18);
 }
 
 TEST(HelmholtzCage, PlaysAFile) {
   const auto path = test_file(
       "field.csv", "t_s,field_x_T,field_y_T,field_z_T\n0,0,0,0\n10,1e-5,0,0\n20,2e-5,0,0\n");
   const AttitudeModel model =
-      with(with(bench_model(), "helmholtz_cage", {{"field_file", node(path.c_str())}}),
-           "magnetic_dipole", {{"dipole_A_m2", numbers({0, 0.1, 0})}});
+      with(with(bench_model(), "helmholtz_cage", "field_file = " + toml(path)), "magnetic_dipole",
+           "dipole_A_m2 = [0, 0.1, 0]");
   const Vec3 torque = torque_body_N_m(model, Quat::Identity(), Vec3::Zero(), 15.0);
   EXPECT_LT((torque - Vec3(0, 0, -1.5e-6)).norm(), 1e-18);
 }
@@ -77,14 +70,12 @@ TEST(HelmholtzCage, PlaysAFile) {
 TEST(PlanetLight, AnEvenlyGlowingPlanetActsAsOneLightFromBelow) {
   const std::string path = sphere_table();
   const AttitudeModel in_orbit =
-      with(bench_model(), "orbit", {{"altitude_m", node(550e3)}, {"inclination_deg", node(97.6)}});
+      with(bench_model(), "orbit", "altitude_m = 550e3, inclination_deg = 97.6");
   const auto planet = [&](const char* changed, double value) {
     return with(in_orbit, "planet_light",
-                {{"table", node(path.c_str())},
-                 {"sun_direction", numbers({0.3, 0.9, 0.2})},
-                 {"zonal", flag(false)},
-                 {"albedo", node(0.0)},
-                 {changed, node(value)}});
+                "table = " + toml(path) +
+                    ", sun_direction = [0.3, 0.9, 0.2], zonal = false, albedo = 0.0, " + changed +
+                    " = " + toml(value));
   };
   const double ratio = 6371.2 / (6371.2 + 550.0);
   const Quat attitude = turned(0.8, {1, -2, 0.5});
@@ -106,7 +97,7 @@ TEST(GravityGradient, AgreesWithBasilisk) {
   const Vec3 position_m(-2816801.601023, 5248174.846916, 3677157.264677);
   model.environment.up_lab = position_m.normalized();
   model.environment.gravity_gradient_1_s2 = 398600.436e9 / std::pow(position_m.norm(), 3);
-  model = with(model, "gravity_gradient", {});
+  model = with(model, "gravity_gradient");
   // Modified Rodrigues parameters (0.1, 0.2, −0.3) of the body in the inertial frame.
   const Vec3 sigma(0.1, 0.2, -0.3);
   const double s2 = sigma.squaredNorm();
@@ -122,7 +113,7 @@ TEST(GravityGradient, LibratesWithTheClosedFormPeriod) {
   model.platform.inertia_kg_m2 = Vec3(10, 30, 25).asDiagonal();
   model.environment.up_lab = Vec3::UnitX();
   model.environment.gravity_gradient_1_s2 = 398600.4418e9 / std::pow(7000e3, 3);
-  model = with(model, "gravity_gradient", {});
+  model = with(model, "gravity_gradient");
   const double period_s = 3762.291311808465;
   const double amplitude_rad = 1e-4;
   const PlatformState start = state_of(model, turned(amplitude_rad, Vec3::UnitZ()));
@@ -135,13 +126,13 @@ TEST(GravityGradient, LibratesWithTheClosedFormPeriod) {
 TEST(GravityGradient, OnTheGround) {
   AttitudeModel model = bench_model();
   model.platform.inertia_kg_m2 = Vec3(1.3, 1.3, 1.0).asDiagonal();
-  model = with(model, "gravity_gradient", {});
+  model = with(model, "gravity_gradient");
   EXPECT_NEAR(torque_body_N_m(model, turned(pi / 4, Vec3::UnitX())).norm(), 6.9e-7, 0.05e-7);
 }
 
 // A body at rest relative to the stars rotates once per sidereal day in the lab, for any inertia.
 TEST(EarthRotation, BodyAtRestAmongTheStarsTurnsBackward) {
-  const AttitudeModel model = with(bench_model(), "earth_rotation", {});
+  const AttitudeModel model = with(bench_model(), "earth_rotation");
   const Vec3 earth = model.environment.earth_rate_lab_rad_s;
   const Quat start = turned(0.7, {1, 2, -1});
   const double time_s = 30000;
@@ -155,11 +146,10 @@ TEST(EarthRotation, BodyAtRestAmongTheStarsTurnsBackward) {
 // gyrocompass, the sum of both momenta is conserved.
 TEST(EarthRotation, KeepsMomentumAmongTheStars) {
   const AttitudeModel plain = bench_model();
-  const AttitudeModel rotor =
-      with(plain, "rotor_momentum", {{"momentum_N_m_s", numbers({0.05, -0.02, 0.03})}});
+  const AttitudeModel rotor = with(plain, "rotor_momentum", "momentum_N_m_s = [0.05, -0.02, 0.03]");
   for (const auto& [model, spin_body_N_m_s] :
-       {std::pair{with(plain, "earth_rotation", {}), Vec3(0, 0, 0)},
-        {with(rotor, "earth_rotation", {}), Vec3(0.05, -0.02, 0.03)}}) {
+       {std::pair{with(plain, "earth_rotation"), Vec3(0, 0, 0)},
+        {with(rotor, "earth_rotation"), Vec3(0.05, -0.02, 0.03)}}) {
     const Vec3 earth = model.environment.earth_rate_lab_rad_s;
     const auto momentum = [&](const PlatformState& s) -> Vec3 {
       const Vec3 inertial_body = s.rate_body_rad_s + s.lab_from_body.conjugate() * earth;
@@ -174,7 +164,7 @@ TEST(EarthRotation, KeepsMomentumAmongTheStars) {
 
 // The reading of a north-finding gyro at rest: 15.041 deg/h.
 TEST(EarthRotation, GyroAtRestReadsFifteenDegreesPerHour) {
-  const AttitudeModel model = with(bench_model(), "earth_rotation", {});
+  const AttitudeModel model = with(bench_model(), "earth_rotation");
   const PlatformState state = state_of(model, turned(0.3, {0, 1, 1}));
   std::vector<Lanes> y;
   for (const double x : to_vector(state)) y.emplace_back(x);
@@ -211,8 +201,8 @@ class LightTable : public testing::Test {
 };
 
 TEST_F(LightTable, TorqueFollowsTheTableAtAnyAttitude) {
-  const AttitudeModel model = with(bench_model(), "radiation_pressure",
-                                   {{"table", node(path_.c_str())}, {"scale", node(1.5)}});
+  const AttitudeModel model =
+      with(bench_model(), "radiation_pressure", "table = " + toml(path_) + ", scale = 1.5");
   for (const Quat& q : {turned(0.3, {1, 2, 0}), turned(0.9, {-2, 1, 0.4}), turned(2.0, {0.1, 0, 1}),
                         Quat::Identity()}) {
     const Vec3 expected = 1.5 * closed_form(q.conjugate() * Vec3::UnitZ());
@@ -222,7 +212,7 @@ TEST_F(LightTable, TorqueFollowsTheTableAtAnyAttitude) {
 }
 
 TEST_F(LightTable, NamesAMissingFile) {
-  EXPECT_THROW(make(bench_model(), "radiation_pressure", {{"table", node("/nowhere/table.csv")}}),
+  EXPECT_THROW(make(bench_model(), "radiation_pressure", "table = '/nowhere/table.csv'"),
                InputError);
 }
 

@@ -152,13 +152,12 @@ TEST(Smoother, EqualsTheJointEstimate) {
 }
 
 AttitudeModel disturbed_body() {
-  AttitudeModel model =
-      with(bench_model(), "static_unbalance", {{"offset_m", numbers({3e-6, -2e-6, -2e-5})}});
+  AttitudeModel model = with(bench_model(), "static_unbalance", "offset_m = [3e-6, -2e-6, -2e-5]");
   for (Parameter& p : model.disturbances.back().parameters) p.sigma = 1e-6;
-  model = with(model, "bearing_drag", {{"coefficient_N_m_s", node(2e-5)}});
+  model = with(model, "bearing_drag", "coefficient_N_m_s = 2e-5");
   model.disturbances.back().parameters[0].sigma = 5e-6;
-  model = with(model, "earth_rotation", {});
-  model = with(model, "gyro_bias", {{"bias_rad_s", numbers({1e-4, -2e-4, 3e-4})}});
+  model = with(model, "earth_rotation");
+  model = with(model, "gyro_bias", "bias_rad_s = [1e-4, -2e-4, 3e-4]");
   for (Parameter& p : model.disturbances.back().parameters) p.sigma = 1e-3;
   return model;
 }
@@ -331,10 +330,10 @@ TEST(Estimates, TakeTheHeadingOfAnEncoder) {
 TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
   PropagationRun run;
   run.model.platform.inertia_kg_m2 = 0.1 * Mat3::Identity();
-  run.model = with(run.model, "gyro_scale", {{"scale", numbers({0, 0, 0})}});
+  run.model = with(run.model, "gyro_scale", "scale = [0, 0, 0]");
   for (Parameter& p : run.model.disturbances.back().parameters) p.sigma = 0.01;
   // With constant rates, only the prior of the bias separates scale from bias.
-  run.model = with(run.model, "gyro_bias", {{"bias_rad_s", numbers({0, 0, 0})}});
+  run.model = with(run.model, "gyro_bias", "bias_rad_s = [0, 0, 0]");
   for (Parameter& p : run.model.disturbances.back().parameters) p.sigma = 1e-5;
   run.sensors = instruments(1e-4, 2e-4, 0.0);
   run.initial = Dynamics(run.model).initial_state({0.3, -0.2, 0.0});
@@ -362,7 +361,7 @@ TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
 // With attitudes of a late camera dated back, the filter is as good as without latency.
 TEST(Estimates, DateLateAttitudesBack) {
   PropagationRun run = drawn_run();
-  run.model = with(run.model, "attitude_latency", {{"latency_s", node(0.1)}});
+  run.model = with(run.model, "attitude_latency", "latency_s = 0.1");
   const SimulatedRun simulated = simulate_run(run, 5);
   FilterSettings settings;
   const MotionModel model(run.model, run.sensors, settings, {});

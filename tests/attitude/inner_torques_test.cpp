@@ -15,7 +15,7 @@ namespace {
 TEST(RotorMomentum, GyrostatPrecessesAtTheClosedFormRate) {
   AttitudeModel model;
   model.platform.inertia_kg_m2 = Vec3(0.12, 0.12, 0.19).asDiagonal();
-  model = with(model, "rotor_momentum", {{"momentum_N_m_s", numbers({0, 0, 0.05})}});
+  model = with(model, "rotor_momentum", "momentum_N_m_s = [0, 0, 0.05]");
   const PlatformState end =
       propagated(model, state_of(model, Quat::Identity(), {0.02, 0, 0.1}), 7.0);
   const double angle = ((0.19 - 0.12) * 0.1 + 0.05) / 0.12 * 7.0;
@@ -25,8 +25,7 @@ TEST(RotorMomentum, GyrostatPrecessesAtTheClosedFormRate) {
 }
 
 TEST(Tether, TwistsWithThePeriodOfATorsionSpring) {
-  const AttitudeModel model =
-      with(bench_model(), "tether", {{"stiffness_N_m_per_rad", node(2e-4)}});
+  const AttitudeModel model = with(bench_model(), "tether", "stiffness_N_m_per_rad = 2e-4");
   // For a rotation about a principal axis, the law is linear at all angles below half a turn.
   const double half_period_s = pi * std::sqrt(0.19 / 2e-4);
   const PlatformState end =
@@ -35,8 +34,7 @@ TEST(Tether, TwistsWithThePeriodOfATorsionSpring) {
 }
 
 TEST(Tether, PullsAlongTheRotationVector) {
-  const AttitudeModel model =
-      with(bench_model(), "tether", {{"stiffness_N_m_per_rad", node(2e-4)}});
+  const AttitudeModel model = with(bench_model(), "tether", "stiffness_N_m_per_rad = 2e-4");
   const Vec3 axis = Vec3(1, -2, 2) / 3;
   for (const double angle : {1e-9, 0.3, 3.0}) {
     const Quat q = turned(angle, axis);
@@ -47,9 +45,8 @@ TEST(Tether, PullsAlongTheRotationVector) {
 
 // J ω(t) = ∫ T₀ sin(2πft + φ) dt.
 TEST(PeriodicTorque, IntegratesToTheClosedFormRate) {
-  const AttitudeModel model = with(
-      bench_model(), "periodic_torque",
-      {{"torque_N_m", numbers({0, 0, 5e-5})}, {"frequency_Hz", node(1.179)}, {"phase", node(2.6)}});
+  const AttitudeModel model = with(bench_model(), "periodic_torque",
+                                   "torque_N_m = [0, 0, 5e-5], frequency_Hz = 1.179, phase = 2.6");
   const double w = 2 * pi * 1.179, t = 33.3;
   const double expected = 5e-5 / (0.19 * w) * (std::cos(2.6) - std::cos(w * t + 2.6));
   EXPECT_NEAR(propagated(model, state_of(model, Quat::Identity()), t).rate_body_rad_s.z(), expected,
@@ -57,22 +54,17 @@ TEST(PeriodicTorque, IntegratesToTheClosedFormRate) {
 }
 
 TEST(PeriodicTorque, TakesPhaseInDegreesToo) {
-  const AttitudeModel model = with(
-      bench_model(), "periodic_torque",
-      {{"torque_N_m", numbers({1, 0, 0})}, {"frequency_Hz", node(1)}, {"phase_deg", node(90)}});
+  const AttitudeModel model = with(bench_model(), "periodic_torque",
+                                   "torque_N_m = [1, 0, 0], frequency_Hz = 1, phase_deg = 90");
   EXPECT_NEAR(torque_body_N_m(model, Quat::Identity()).x(), 1.0, 1e-15);
 }
 
 // The bench with an appendage.
 AttitudeModel flexible(const std::vector<double>& axis, double frequency_Hz, double damping,
-                       double inertia_kg_m2,
-                       const std::vector<std::pair<std::string, SettingsNode>>& more = {}) {
-  std::vector<std::pair<std::string, SettingsNode>> keys = {{"axis", numbers(axis)},
-                                                            {"frequency_Hz", node(frequency_Hz)},
-                                                            {"damping", node(damping)},
-                                                            {"inertia_kg_m2", node(inertia_kg_m2)}};
-  keys.insert(keys.end(), more.begin(), more.end());
-  return with(bench_model(), "flexible_mode", keys);
+                       double inertia_kg_m2, const std::string& further_keys = "") {
+  return with(bench_model(), "flexible_mode",
+              "axis = " + toml(axis) + ", frequency_Hz = " + toml(frequency_Hz) + ", damping = " +
+                  toml(damping) + ", inertia_kg_m2 = " + toml(inertia_kg_m2) + further_keys);
 }
 
 // Two inertias coupled by a spring, without other torques: ω = ω_n √(I/(I − J)).
@@ -93,7 +85,7 @@ TEST(FlexibleMode, StartsAsItsKeysState) {
   const double I = 0.19, appendage = 0.05, f = 0.4, rate = 0.02;
   const AttitudeModel model =
       flexible({0, 0, 1}, f, 0, appendage,
-               {{"initial_angle_deg", node(0.5)}, {"initial_rate_rad_s", node(0.3 + rate)}});
+               ", initial_angle_deg = 0.5, initial_rate_rad_s = " + toml(0.3 + rate));
   const double coupled = 2 * pi * f * std::sqrt(I / (I - appendage)), t = 1.7;
   const PlatformState end = propagated(model, state_of(model, Quat::Identity(), {0, 0, 0.3}), t);
   EXPECT_NEAR(end.extra[0],
@@ -129,8 +121,8 @@ TEST(FlexibleMode, KeepsAngularMomentumAndLosesEnergyToItsDamper) {
 TEST(FlexibleMode, KeepsMomentumAndEnergyWhereItChangesTheInertia) {
   const double J = 0.03, f = 0.5;
   const std::vector<double> slope{0.4, -0.3, -0.1, 0.5, -0.2, 0.6};
-  const AttitudeModel model = flexible(
-      {1, 1, 0}, f, 0, J, {{"inertia_slope", numbers(slope)}, {"initial_angle_deg", node(6)}});
+  const AttitudeModel model =
+      flexible({1, 1, 0}, f, 0, J, ", inertia_slope = " + toml(slope) + ", initial_angle_deg = 6");
   const Vec3 axis = Vec3(1, 1, 0).normalized();
   Mat3 S;
   S << 0.4, 0.5, -0.2, 0.5, -0.3, 0.6, -0.2, 0.6, -0.1;
@@ -203,15 +195,14 @@ TEST(FlexibleMode, RefusesMoreInertiaThanThePlatformHas) {
 TEST(ActuatorGain, AddsItsShareOfTheCommand) {
   AttitudeModel common = bench_model();
   common.schedule.append(0.0, {.command_body_N_m = {1e-3, 2e-3, -3e-3}});
-  const AttitudeModel per_axis =
-      with(common, "actuator_gain", {{"gain_error", numbers({0.1, -0.2, 0})}});
-  common = with(common, "actuator_gain", {{"gain_error", node(0.2)}});
+  const AttitudeModel per_axis = with(common, "actuator_gain", "gain_error = [0.1, -0.2, 0]");
+  common = with(common, "actuator_gain", "gain_error = 0.2");
   EXPECT_LT((torque_body_N_m(common, Quat::Identity()) - Vec3(2e-4, 4e-4, -6e-4)).norm(), 1e-18);
   EXPECT_LT((torque_body_N_m(per_axis, Quat::Identity()) - Vec3(1e-4, -4e-4, 0)).norm(), 1e-18);
 }
 
 TEST(TurbineTorque, SpinsUpAboutTheVerticalAtAnyTilt) {
-  const AttitudeModel model = with(bench_model(), "turbine_torque", {{"torque_N_m", node(3e-6)}});
+  const AttitudeModel model = with(bench_model(), "turbine_torque", "torque_N_m = 3e-6");
   for (const Quat& q : {Quat::Identity(), turned(0.5, {1, 2, 0})}) {
     EXPECT_LT((q * torque_body_N_m(model, q) - Vec3(0, 0, 3e-6)).norm(), 1e-20);
   }
@@ -219,7 +210,7 @@ TEST(TurbineTorque, SpinsUpAboutTheVerticalAtAnyTilt) {
 
 TEST(RoomDraft, IsConstantInTheLab) {
   const AttitudeModel model =
-      with(bench_model(), "room_draft", {{"torque_lab_N_m", numbers({1e-6, -2e-6, 3e-6})}});
+      with(bench_model(), "room_draft", "torque_lab_N_m = [1e-6, -2e-6, 3e-6]");
   const Quat q = turned(1.3, {1, 2, 5});
   EXPECT_LT((q * torque_body_N_m(model, q) - Vec3(1e-6, -2e-6, 3e-6)).norm(), 1e-20);
 }

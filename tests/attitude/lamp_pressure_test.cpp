@@ -1,9 +1,6 @@
 // The current of the lamps in the schedule, and the torque that is proportional to it.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "attitude/recordings/recording.h"
 #include "core/constants.h"
 #include "tests/attitude/disturbance_bench.h"
@@ -40,8 +37,8 @@ TEST(LampPressureLaw, IsProportionalToTheCurrent) {
     AttitudeModel model = bench_model();
     model.disturbances.clear();
     model.schedule.append(0.0, held);
-    model = with(model, "lamp_pressure",
-                 {{"torque_lab_N_m", numbers({1e-5, -2e-5, 3e-5})}, {"led_current_A", node(0.7)}});
+    model =
+        with(model, "lamp_pressure", "torque_lab_N_m = [1e-5, -2e-5, 3e-5], led_current_A = 0.7");
     // After a quarter turn about the vertical, lab x is the body's −y and lab y its x.
     return torque_body_N_m(model, turned(0.5 * pi, Vec3::UnitZ()));
   };

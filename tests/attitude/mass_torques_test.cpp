@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "attitude/disturbances/mass/sag_compliance.h"
 #include "core/constants.h"
@@ -21,7 +19,7 @@ TEST(StaticUnbalance, SwingsWithThePeriodOfAPendulum) {
   AttitudeModel model;
   model.platform.mass_kg = 29.0;
   model.platform.inertia_kg_m2 = Vec3(1.3, 1.3, 1.2).asDiagonal();
-  model = with(model, "static_unbalance", {{"offset_m", numbers({0, 0, -81e-6})}});
+  model = with(model, "static_unbalance", "offset_m = [0, 0, -81e-6]");
   const double small_s = 2 * pi * std::sqrt(1.3 / (29.0 * g * 81e-6));
   EXPECT_NEAR(small_s, 47.2, 0.05);
   for (const double amplitude_rad : {1e-3, 0.5, 1.4}) {
@@ -34,8 +32,8 @@ TEST(StaticUnbalance, SwingsWithThePeriodOfAPendulum) {
 }
 
 TEST(MassShift, ActsFromItsInstantOn) {
-  const AttitudeModel model = with(bench_model(), "mass_shift",
-                                   {{"time_s", node(100)}, {"offset_m", numbers({1e-6, 0, 0})}});
+  const AttitudeModel model =
+      with(bench_model(), "mass_shift", "time_s = 100, offset_m = [1e-6, 0, 0]");
   const PlatformState start = state_of(model, Quat::Identity());
   EXPECT_LT(propagated(model, start, 100.0).rate_body_rad_s.norm(), 1e-15);
   // Afterwards, the torque m r g about y is nearly constant for a second: θ = ½ α t².
@@ -50,8 +48,7 @@ TEST(MassShift, ActsFromItsInstantOn) {
 TEST(BatteryDischarge, ReproducesThePaperFromItsCells) {
   const AttitudeModel model =
       with(bench_model(), "battery_discharge",
-           {{"lithium", node("rounded")},
-            {"cell", list({table({{"electrodes_m", numbers({0.03225, 0, 0})}})})}});
+           "lithium = 'rounded', cell = [{electrodes_m = [0.03225, 0, 0]}]");
   const PlatformState empty = state_of(model, Quat::Identity(), Vec3::Zero(), 0.0, 2.4 * 3600);
   EXPECT_NEAR(torque_body_N_m(model, empty).norm(), 2.3e-4, 0.05e-4);
   EXPECT_EQ(torque_body_N_m(model, Quat::Identity()).norm(), 0.0);
@@ -59,8 +56,7 @@ TEST(BatteryDischarge, ReproducesThePaperFromItsCells) {
 
 // 1 µm per ampere hour at 2 A for half an hour is 1 µm.
 TEST(BatteryDischarge, CountsAmpereHours) {
-  AttitudeModel model =
-      with(bench_model(), "battery_discharge", {{"shift_m_per_Ah", numbers({0, 1e-6, 0})}});
+  AttitudeModel model = with(bench_model(), "battery_discharge", "shift_m_per_Ah = [0, 1e-6, 0]");
   model.schedule.append(0.0, {.battery_current_A = 2.0});
   const PlatformState after = state_of(model, Quat::Identity(), Vec3::Zero(), 0.0, 2.0 * 1800);
   EXPECT_NEAR(torque_body_N_m(model, after).x(), -7.0 * g * 1e-6, 1e-12);
@@ -70,8 +66,9 @@ TEST(BatteryDischarge, CountsAmpereHours) {
 // torque is (m g)² (1/k_x − 1/k_z) sin θ cos θ. Balancing at zero tilt adds (m g)²/k_z sin θ.
 TEST(ElasticSag, AnisoelasticTorqueOfALumpedPlatform) {
   const double weight = 7.0 * g, kx = 4e6, kz = 9e6;
-  const AttitudeModel model = with(bench_model(), "elastic_sag",
-                                   {{"compliance_s2", numbers({7.0 / kx, 7.0 / kx, 7.0 / kz})}});
+  const AttitudeModel model =
+      with(bench_model(), "elastic_sag",
+           "compliance_s2 = " + toml(std::array{7.0 / kx, 7.0 / kx, 7.0 / kz}));
   for (const double tilt : {0.05, 0.5, 1.0}) {
     const Vec3 torque = torque_body_N_m(model, turned(tilt, Vec3::UnitY()));
     const double free = weight * weight * (1 / kx - 1 / kz) * std::sin(tilt) * std::cos(tilt);
@@ -83,18 +80,13 @@ TEST(ElasticSag, AnisoelasticTorqueOfALumpedPlatform) {
 
 TEST(ElasticSag, BeamsGiveTheTorqueOfTheirClosedForms) {
   const DumbbellArms arms{Vec3::UnitX(), 0.6, 2.5, 0.8, 900.0};
-  const AttitudeModel dumbbell =
-      with(bench_model(), "elastic_sag",
-           {{"dumbbell", table({{"length_m", node(0.6)},
-                                {"end_mass_kg", node(2.5)},
-                                {"beam_mass_kg", node(0.8)},
-                                {"bending_stiffness_N_m2", node(900)}})}});
+  const AttitudeModel dumbbell = with(bench_model(), "elastic_sag",
+                                      "dumbbell = {length_m = 0.6, end_mass_kg = 2.5, "
+                                      "beam_mass_kg = 0.8, bending_stiffness_N_m2 = 900}");
   const CounterbalanceBeams beams{0.25, 3.2, 300.0, 4};
-  const AttitudeModel tabletop = with(bench_model(), "elastic_sag",
-                                      {{"tabletop", table({{"length_m", node(0.25)},
-                                                           {"total_mass_kg", node(3.2)},
-                                                           {"bending_stiffness_N_m2", node(300)},
-                                                           {"count", node(4)}})}});
+  const AttitudeModel tabletop = with(
+      bench_model(), "elastic_sag",
+      "tabletop = {length_m = 0.25, total_mass_kg = 3.2, bending_stiffness_N_m2 = 300, count = 4}");
   for (const double tilt : {0.1, 0.5, 1.0}) {
     const Quat q = turned(tilt, Vec3::UnitY());
     EXPECT_NEAR(torque_body_N_m(dumbbell, q).y() / sag_torque_N_m(arms, tilt, g), 1.0, 1e-12);
@@ -104,36 +96,32 @@ TEST(ElasticSag, BeamsGiveTheTorqueOfTheirClosedForms) {
 
 TEST(ElasticSag, RefusesACouplingThatIsNotSymmetric) {
   EXPECT_THROW(make(bench_model(), "elastic_sag",
-                    {{"compliance_s2", list({numbers({1e-7, 1e-8, 0}), numbers({0, 1e-7, 0}),
-                                             numbers({0, 0, 1e-7})})}}),
+                    "compliance_s2 = [[1e-7, 1e-8, 0], [0, 1e-7, 0], [0, 0, 1e-7]]"),
                InputError);
 }
 
 // The paper's 1.23e-5 N m is for one axis at rest. Three axes add as vectors.
 TEST(StepperQuantization, ReproducesThePaper) {
-  const std::vector<std::pair<std::string, SettingsNode>> usual = {{"moving_mass_kg", node(0.25)},
-                                                                   {"lead_m", node(2e-3)}};
-  auto one_axis = usual;
-  one_axis.emplace_back("rounding_steps", numbers({0.5, 0, 0, 0, 0, 0, 0, 0}));
-  const AttitudeModel single = with(bench_model(), "stepper_quantization", one_axis);
+  const std::string usual = "moving_mass_kg = 0.25, lead_m = 2e-3";
+  const AttitudeModel single = with(bench_model(), "stepper_quantization",
+                                    usual + ", rounding_steps = [0.5, 0, 0, 0, 0, 0, 0, 0]");
   EXPECT_NEAR(torque_body_N_m(single, Quat::Identity()).norm(), 1.23e-5, 0.005e-5);
   const AttitudeModel worst = with(bench_model(), "stepper_quantization", usual);
   EXPECT_NEAR(torque_body_N_m(worst, Quat::Identity()).norm(), std::sqrt(2.0) * 1.226e-5, 0.005e-5);
-  auto too_far = usual;
-  too_far.emplace_back("rounding_steps", numbers({0.6, 0, 0, 0, 0, 0, 0, 0}));
-  EXPECT_THROW(make(bench_model(), "stepper_quantization", too_far), InputError);
+  EXPECT_THROW(make(bench_model(), "stepper_quantization",
+                    usual + ", rounding_steps = [0.6, 0, 0, 0, 0, 0, 0, 0]"),
+               InputError);
 }
 
 // An acceleration a of the floor has the same effect as a gravity of g − a (equivalence principle).
 TEST(FloorVibration, IsGravityOfAnAcceleratedLab) {
   const Vec3 offset_m(2e-6, -1e-6, -3e-5), acceleration(0.3, -0.2, 0.1);
   const AttitudeModel rigid =
-      with(bench_model(), "static_unbalance", {{"offset_m", numbers({2e-6, -1e-6, -3e-5})}});
+      with(bench_model(), "static_unbalance", "offset_m = [2e-6, -1e-6, -3e-5]");
   // Zero frequency and a phase of a quarter turn: a constant acceleration.
-  const AttitudeModel vibrating = with(rigid, "floor_vibration",
-                                       {{"acceleration_m_s2", numbers({0.3, -0.2, 0.1})},
-                                        {"frequency_Hz", node(0)},
-                                        {"phase", node(pi / 2)}});
+  const AttitudeModel vibrating =
+      with(rigid, "floor_vibration",
+           "acceleration_m_s2 = [0.3, -0.2, 0.1], frequency_Hz = 0, phase = " + toml(pi / 2));
   AttitudeModel heavier = rigid;
   heavier.environment.gravity_lab_m_s2 -= acceleration;
   const PlatformState state = state_of(rigid, turned(0.4, {1, 2, 3}));
@@ -143,12 +131,10 @@ TEST(FloorVibration, IsGravityOfAnAcceleratedLab) {
 }
 
 TEST(FloorVibration, PlaysSpectraAndRecordings) {
-  const AttitudeModel base =
-      with(bench_model(), "static_unbalance", {{"offset_m", numbers({0, 0, -1e-5})}});
-  const AttitudeModel noisy = with(base, "floor_vibration",
-                                   {{"spectrum", table({{"frequency_Hz", numbers({1, 10})},
-                                                        {"density_m2_s3", numbers({1e-8, 1e-8})},
-                                                        {"tones", node(200)}})}});
+  const AttitudeModel base = with(bench_model(), "static_unbalance", "offset_m = [0, 0, -1e-5]");
+  const AttitudeModel noisy =
+      with(base, "floor_vibration",
+           "spectrum = {frequency_Hz = [1, 10], density_m2_s3 = [1e-8, 1e-8], tones = 200}");
   // Torque about x: m · 1e-5 · a_y, whose mean square is 9e-8 by the area of the spectrum.
   double sum = 0;
   constexpr int samples = 4000;
@@ -160,8 +146,8 @@ TEST(FloorVibration, PlaysSpectraAndRecordings) {
   const auto path = test_file("floor.csv",
                               "t_s,acceleration_x_m_s2,acceleration_y_m_s2,acceleration_z_m_s2\n"
                               "0,0.1,0,0\n1,0.2,0,0\n2,0.3,0,0\n");
-  const AttitudeModel recorded = with(
-      base, "floor_vibration", {{"accelerogram_file", node(path.c_str())}, {"scale", node(2)}});
+  const AttitudeModel recorded =
+      with(base, "floor_vibration", "accelerogram_file = " + toml(path) + ", scale = 2");
   EXPECT_NEAR(torque_body_N_m(recorded, Quat::Identity(), Vec3::Zero(), 1.0).y(), 7.0 * 1e-5 * 0.4,
               1e-15);
   EXPECT_EQ(torque_body_N_m(recorded, Quat::Identity(), Vec3::Zero(), 5.0).norm(), 0.0);

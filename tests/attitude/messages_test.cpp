@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -228,9 +227,9 @@ TEST(Orbit, OfAnEphemerisHasTheGradientOfItsStates) {
   const auto file = new_file(oem_text(ellipse, 9600.0, 120.0));
   AttitudeModel model = bench_model();
   model.platform.inertia_kg_m2 = Vec3(10, 30, 25).asDiagonal();
-  model = with(with(model, "orbit",
-                    {{"ephemeris", node(file.c_str())}, {"epoch", node("2026-03-01T00:10:00")}}),
-               "gravity_gradient", {});
+  model =
+      with(with(model, "orbit", "ephemeris = " + toml(file) + ", epoch = '2026-03-01T00:10:00'"),
+           "gravity_gradient", {});
   const Quat attitude = turned(0.7, {1, -1, 2});
   const Vec3 position_m = ellipse(4200.0)[0], u = attitude.conjugate() * position_m.normalized();
   const Vec3 expected = 3.0 * 3.986004418e14 / std::pow(position_m.norm(), 3) *
@@ -251,22 +250,15 @@ TEST(Orbit, OfStatesOnACircleIsTheCircle) {
                                    circle.radius_m * motion_rad_s * along};
       },
       6000.0, 60.0, {.start = "2007-10-15T00:00:00"}));
-  const SettingsNode sun = numbers({1, 0.2, 0.1});
-  const AttitudeModel stated = with(bench_model(), "orbit",
-                                    {{"altitude_m", node(500e3)},
-                                     {"inclination_rad", node(0.9)},
-                                     {"phase_rad", node(0.3)},
-                                     {"greenwich_angle_rad", node(0.4022837240028158)},
-                                     {"date_year", node(2025)},
-                                     {"duration_s", node(6000)},
-                                     {"sun_direction", sun}}),
-                      read = with(bench_model(), "orbit",
-                                  {{"ephemeris", node(file.c_str())},
-                                   {"date_year", node(2025)},
-                                   {"sun_direction", sun}});
+  const std::string sun = "date_year = 2025, sun_direction = [1, 0.2, 0.1]";
+  const AttitudeModel stated =
+                          with(bench_model(), "orbit",
+                               "altitude_m = 500e3, inclination_rad = 0.9, phase_rad = 0.3, "
+                               "greenwich_angle_rad = 0.4022837240028158, duration_s = 6000, " +
+                                   sun),
+                      read = with(bench_model(), "orbit", "ephemeris = " + toml(file) + ", " + sun);
   const auto at = [](const AttitudeModel& model, double t_s) {
-    const AttitudeModel full =
-        with(model, "magnetic_dipole", {{"dipole_A_m2", numbers({1, 2, 3})}});
+    const AttitudeModel full = with(model, "magnetic_dipole", "dipole_A_m2 = [1, 2, 3]");
     return torque_body_N_m(full, Quat::Identity(), Vec3::Zero(), t_s);
   };
   for (const double t_s : {0.0, 777.0, 3210.0, 5990.0}) {
@@ -277,31 +269,26 @@ TEST(Orbit, OfStatesOnACircleIsTheCircle) {
 // Behind the Earth there is no light pressure. The Sun is that of the environment if the orbit has
 // none.
 TEST(Orbit, TakesTheSunOfTheEnvironment) {
-  const auto pressure = [](const Vec3& sun,
-                           std::vector<std::pair<std::string, SettingsNode>> orbit) {
+  const auto pressure = [](const Vec3& sun, const std::string& further_keys) {
     AttitudeModel model = bench_model();
     model.environment.sun = SunPath::fixed(sun);
-    orbit.emplace_back("altitude_m", node(500e3));
-    orbit.emplace_back("inclination_deg", node(0));
-    model = with(with(model, "orbit", orbit), "radiation_pressure",
-                 {{"area_moment_m3", numbers({0, 0, 1})}});
+    model = with(model, "orbit", "altitude_m = 500e3, inclination_deg = 0" + further_keys);
+    model = with(model, "radiation_pressure", "area_moment_m3 = [0, 0, 1]");
     return torque_body_N_m(model, Quat::Identity()).norm();
   };
-  const double lit_N_m = pressure(Vec3::UnitX(), {});  // the satellite is on +x
+  const double lit_N_m = pressure(Vec3::UnitX(), "");  // the satellite is on +x
   EXPECT_NEAR(lit_N_m, 1361.0 / 299792458.0, 0.01 * lit_N_m);
-  EXPECT_EQ(pressure(-Vec3::UnitX(), {}), 0.0);
-  EXPECT_EQ(pressure(Vec3::UnitX(), {{"sun_direction", numbers({-1, 0, 0})}}), 0.0);
+  EXPECT_EQ(pressure(-Vec3::UnitX(), ""), 0.0);
+  EXPECT_EQ(pressure(Vec3::UnitX(), ", sun_direction = [-1, 0, 0]"), 0.0);
 }
 
 TEST(Orbit, KeysOfCircleAndEphemerisExcludeEachOther) {
   const auto file = new_file(oem_text(ellipse, 600.0, 60.0));
-  const SettingsNode states = node(file.c_str());
-  EXPECT_THROW(make(bench_model(), "orbit", {{"ephemeris", states}, {"altitude_m", node(5e5)}}),
+  const std::string states = "ephemeris = " + toml(file);
+  EXPECT_THROW(make(bench_model(), "orbit", states + ", altitude_m = 5e5"), InputError);
+  EXPECT_THROW(make(bench_model(), "orbit", states + ", epoch = '2026-03-02T00:00:00'"),
                InputError);
-  EXPECT_THROW(
-      make(bench_model(), "orbit", {{"ephemeris", states}, {"epoch", node("2026-03-02T00:00:00")}}),
-      InputError);
-  EXPECT_THROW(make(bench_model(), "orbit", {{"inclination_deg", node(50)}}), InputError);
+  EXPECT_THROW(make(bench_model(), "orbit", "inclination_deg = 50"), InputError);
 }
 
 // One state of a body that Orekit 12 wrote in three ways (its test messages of APM).

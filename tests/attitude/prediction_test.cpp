@@ -15,9 +15,8 @@ namespace {
 // rate alone the error would be 2e-4 rad, five standard deviations of a camera.
 TEST(Prediction, OfALateCameraIsThePastAttitude) {
   PropagationRun run;
-  run.model =
-      with(with(bench_model(), "static_unbalance", {{"offset_m", numbers({0, 0, -1.5e-4})}}),
-           "attitude_latency", {{"latency_s", node(0.2)}});
+  run.model = with(with(bench_model(), "static_unbalance", "offset_m = [0, 0, -1.5e-4]"),
+                   "attitude_latency", "latency_s = 0.2");
   run.sensors = {};
   run.sensors.camera.emplace();
   run.sensors.camera->noise_rad = Vec3::Zero();
@@ -56,12 +55,12 @@ TEST(Prediction, OfALateCameraIsThePastAttitude) {
 // the model without it.
 TEST(Prediction, SlopesOfOffsetsAreThoseOfInstrumentsThatDependOnTheMotion) {
   AttitudeModel plain =
-      with(with(bench_model(), "static_unbalance", {{"offset_m", numbers({1e-5, 0, -1.5e-4})}}),
-           "gyro_bias", {{"bias_rad_s", numbers({1e-3, -2e-3, 5e-4})}});
-  plain = with(plain, "camera_misalignment", {{"misalignment_rad", numbers({2e-3, 0, -1e-3})}});
+      with(with(bench_model(), "static_unbalance", "offset_m = [1e-5, 0, -1.5e-4]"), "gyro_bias",
+           "bias_rad_s = [1e-3, -2e-3, 5e-4]");
+  plain = with(plain, "camera_misalignment", "misalignment_rad = [2e-3, 0, -1e-3]");
   const AttitudeModel turned_gyro =
-      with(plain, "gyro_misalignment", {{"misalignment_rad", numbers({0, 0, 0})}});
-  AttitudeModel turning_lab = with(plain, "earth_rotation", {});
+      with(plain, "gyro_misalignment", "misalignment_rad = [0, 0, 0]");
+  AttitudeModel turning_lab = with(plain, "earth_rotation");
   turning_lab.environment.earth_rate_lab_rad_s = Vec3(0.0, 5e-5, 5e-5);
   EXPECT_TRUE(Dynamics(plain).offsets().has_value());
   EXPECT_FALSE(Dynamics(turned_gyro).offsets().has_value());

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
@@ -132,8 +131,8 @@ TEST(Recording, ColumnsMayHaveOtherNamesAndUnits) {
   EXPECT_THAT(cells_of(r, "gyro_z_rad_s"),
               ElementsAre(testing::DoubleEq(pi / 2), testing::DoubleEq(pi)));
   EXPECT_DOUBLE_EQ(cells_of(r, "gyro_x_rad_s")[0], 2 * pi);
-  const RecordingOptions from_file = read_recording_options(settings_of(
-      table({{"columns", table({{"t_ms", node("Stamp")}, {"gyro_z_deg_s", node("wz")}})}})));
+  const RecordingOptions from_file =
+      read_recording_options(settings_of("columns = {t_ms = 'Stamp', gyro_z_deg_s = 'wz'}"));
   EXPECT_EQ(from_file.columns, options.columns);
 }
 

@@ -2,7 +2,6 @@
 // sections 5 and 6).
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -81,7 +80,7 @@ TEST(ReferenceBody, PhobosLibratesAsInTudat) {
   const double gradient_1_s2 = 4.282837e13 / std::pow(9376e3, 3);
   model.environment.up_lab = Vec3::UnitX();
   model.environment.gravity_gradient_1_s2 = gradient_1_s2;
-  model = with(model, "gravity_gradient", {});
+  model = with(model, "gravity_gradient");
   const double omega_rad_s = std::sqrt(3.0 * gradient_1_s2 * (0.4265 - 0.3615) / 0.5024);
   const double amplitude_rad = 1e-5;
   const PlatformState start = state_of(model, turned(amplitude_rad, Vec3::UnitZ()));

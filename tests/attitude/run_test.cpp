@@ -4,13 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <set>
 
 #include "attitude/model/platform.h"
 #include "core/constants.h"
-#include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"
+#include "tests/files.h"
 #include "tests/refusal.h"
 
 namespace photorque {
@@ -18,50 +17,47 @@ namespace {
 
 using testing::HasSubstr;
 
-SettingsNode rows(const std::vector<std::vector<double>>& matrix) {
-  std::vector<SettingsNode> all;
-  for (const auto& row : matrix) all.push_back(numbers(row));
-  return list(std::move(all));
-}
-
 // An experiment like those in the contract.
-SettingsNode experiment() {
-  return table(
-      {{"platform", table({{"topology", node("tabletop")},
-                           {"mass_kg", node(8.7)},
-                           {"inertia_kg_m2", rows({{0.116, 0, 0}, {0, 0.12, 0}, {0, 0, 0.183}})}})},
-       {"environment", table({{"gravity_m_s2", node(9.80665)},
-                              {"magnetic_field_T", numbers({1.6e-6, 2e-5, -3.7e-5})},
-                              {"latitude_deg", node(45.5)}})},
-       {"disturbance", list({table({{"kind", node("static_unbalance")},
-                                    {"offset_m", table({{"value", numbers({-9e-7, -3e-6, -4e-5})},
-                                                        {"sigma", numbers({5e-7, 5e-7, 3e-6})}})}}),
-                             table({{"kind", node("bearing_drag")},
-                                    {"coefficient_N_m_s",
-                                     table({{"value", node(9e-6)}, {"sigma", node(2e-6)}})}})})},
-       {"sensors", table({{"camera", table({{"noise_arcsec", numbers({37, 37, 12})}})},
-                          {"gyro", table({{"noise_rad_s", node(2e-4)},
-                                          {"bias_rad_s",
-                                           table({{"value", numbers({0, 0, 0})},
-                                                  {"sigma", numbers({1e-3, 1e-3, 1e-3})}})}})}})},
-       {"propagate", table({{"duration_s", node(30.0)},
-                            {"initial_tilt_deg", node(10.0)},
-                            {"initial_rate_rad_s", numbers({0, 0, 0.05})}})}});
+const std::string experiment_text = R"([platform]
+topology = "tabletop"
+mass_kg = 8.7
+inertia_kg_m2 = [[0.116, 0, 0], [0, 0.12, 0], [0, 0, 0.183]]
+[environment]
+gravity_m_s2 = 9.80665
+magnetic_field_T = [1.6e-6, 2e-5, -3.7e-5]
+latitude_deg = 45.5
+[[disturbance]]
+kind = "static_unbalance"
+offset_m = { value = [-9e-7, -3e-6, -4e-5], sigma = [5e-7, 5e-7, 3e-6] }
+[[disturbance]]
+kind = "bearing_drag"
+coefficient_N_m_s = { value = 9e-6, sigma = 2e-6 }
+[sensors.camera]
+noise_arcsec = [37, 37, 12]
+[sensors.gyro]
+noise_rad_s = 2e-4
+bias_rad_s = { value = [0, 0, 0], sigma = [1e-3, 1e-3, 1e-3] }
+[propagate]
+duration_s = 30.0
+initial_tilt_deg = 10.0
+initial_rate_rad_s = [0, 0, 0.05]
+)";
+
+// The run of the experiment with changes as by --set.
+PropagationRun read(const std::vector<std::string>& changes = {},
+                    const std::string& text = experiment_text) {
+  SettingsNode root = parse_toml(text, "run.toml");
+  for (const std::string& change : changes) apply_override(root, change);
+  return read_propagation(Settings(root));
 }
 
-SettingsNode& at(SettingsNode& root, const std::string& first, const std::string& second) {
-  return std::get<SettingsNode::Table>(
-      std::get<SettingsNode::Table>(root.value)[first].value)[second];
-}
-
-std::string complaint(const std::function<void(SettingsNode&)>& change) {
-  SettingsNode root = experiment();
-  change(root);
-  return refusal_of([&] { read_propagation(settings_of(root)); });
+std::string complaint(const std::vector<std::string>& changes,
+                      const std::string& text = experiment_text) {
+  return refusal_of([&] { read(changes, text); });
 }
 
 TEST(Experiment, OfTheContractIsReadWhole) {
-  const PropagationRun run = read_propagation(settings_of(experiment()));
+  const PropagationRun run = read();
   EXPECT_EQ(run.model.platform.topology, Topology::tabletop);
   EXPECT_EQ(run.model.platform.mass_kg, 8.7);
   EXPECT_EQ(run.model.environment.gravity_lab_m_s2.z(), -9.80665);
@@ -80,115 +76,86 @@ TEST(Experiment, OfTheContractIsReadWhole) {
 }
 
 TEST(Experiment, WrongInputIsOneClearLine) {
-  EXPECT_EQ(complaint([](SettingsNode&) {}), "");
-  using Change = std::function<void(SettingsNode&)>;
-  const auto set = [](const std::string& first, const std::string& second,
-                      const SettingsNode& value) -> Change {
-    return [=](SettingsNode& r) { at(r, first, second) = value; };
-  };
-  const std::pair<Change, std::string> cases[] = {
-      {set("platform", "inertia_kg_m2", rows({{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.3}})),
+  EXPECT_EQ(complaint({}), "");
+  const std::pair<std::string, std::string> cases[] = {
+      {"platform.inertia_kg_m2=[[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.3]]",
        "platform.inertia_kg_m2: found principal moments 0.1, 0.1, 0.3, expected "
        "moments none of which exceeds the sum of the other two"},
-      {set("platform", "inertia_kg_m2", rows({{0.1, 0.05, 0}, {0, 0.1, 0}, {0, 0, 0.1}})),
-       "symmetric"},
-      {set("platform", "mass_kg", node(-7.0)), "platform.mass_kg: found -7, expected a number > 0"},
-      {set("propagate", "initial_attitude", numbers({1, 1, 0, 0})),
+      {"platform.inertia_kg_m2=[[0.1, 0.05, 0], [0, 0.1, 0], [0, 0, 0.1]]", "symmetric"},
+      {"platform.mass_kg=-7.0", "platform.mass_kg: found -7, expected a number > 0"},
+      {"propagate.initial_attitude=[1, 1, 0, 0]",
        "propagate.initial_attitude: found a quaternion of norm 1.41"},
-      {[](SettingsNode& r) {
-         const auto command = [](double t) {
-           return table({{"time_s", node(t)}, {"torque_N_m", numbers({1e-4, 0, 0})}});
-         };
-         at(r, "propagate", "command") = list({command(1.0), command(3.0), command(2.0)});
-       },
+      {"propagate.command=[{time_s=1, torque_N_m=[1e-4, 0, 0]}, "
+       "{time_s=3, torque_N_m=[1e-4, 0, 0]}, {time_s=2, torque_N_m=[1e-4, 0, 0]}]",
        "propagate.command[2].time_s"},
-      {[](SettingsNode& r) {
-         std::get<SettingsNode::Table>(
-             std::get<SettingsNode::Array>(
-                 std::get<SettingsNode::Table>(r.value)["disturbance"].value)[1]
-                 .value)["kind"] = node("baring_drag");
-       },
-       "did you mean \"bearing_drag\"?"},
-      {[](SettingsNode& r) {
-         auto& platform = std::get<SettingsNode::Table>(
-             std::get<SettingsNode::Table>(r.value)["platform"].value);
-         platform["mass"] = platform["mass_kg"];
-         platform.erase("mass_kg");
-       },
-       "platform.mass: found a key without a unit of mass, expected the key mass_kg"},
-      {set("environment", "gravty_m_s2", node(9.8)), "perhaps \"gravity_m_s2\""},
-      {set("propagate", "duration_s", node(0.0)), "propagate.duration_s"},
-      {set("propagate", "output_rate_Hz", node(1e7)), "20 million"},
-      {set("propagate", "commands", node("no_such_commands.csv")), "no_such_commands.csv"},
-      {set("propagate", "longest_step_s", node(1e-12)), "propagate.longest_step_s"},
-      {set("propagate", "epoch", node("9999-12-31T23:59:40")),
+      {"disturbance[1].kind=baring_drag", "did you mean \"bearing_drag\"?"},
+      {"environment.gravty_m_s2=9.8", "perhaps \"gravity_m_s2\""},
+      {"propagate.duration_s=0.0", "propagate.duration_s"},
+      {"propagate.output_rate_Hz=1e7", "20 million"},
+      {"propagate.commands='no_such_commands.csv'", "no_such_commands.csv"},
+      {"propagate.longest_step_s=1e-12", "propagate.longest_step_s"},
+      {"propagate.epoch='9999-12-31T23:59:40'",
        "propagate.epoch: found an end after the year 9999"},
   };
-  for (const auto& [change, words] : cases) EXPECT_THAT(complaint(change), HasSubstr(words));
+  for (const auto& [change, words] : cases) EXPECT_THAT(complaint({change}), HasSubstr(words));
+  EXPECT_THAT(complaint({}, replaced(experiment_text, "mass_kg", "mass")),
+              HasSubstr("platform.mass: found a key without a unit of mass, expected the key "
+                        "mass_kg"));
 }
 
 TEST(Experiment, BeginsAsItsBearingsAllow) {
-  const auto about = [](const char* axis, std::vector<double> rate_rad_s, double tilt_deg) {
-    return complaint([&](SettingsNode& r) {
-      at(r, "platform", "topology") = node("one_axis");
-      at(r, "platform", "axis") = node(axis);
-      at(r, "propagate", "initial_rate_rad_s") = numbers(rate_rad_s);
-      at(r, "propagate", "initial_tilt_deg") = node(tilt_deg);
-      // A tilt towards y is a rotation about x.
-      at(r, "propagate", "initial_heading_deg") = node(90.0);
-    });
+  const auto about = [](const std::string& axis, const std::string& rate_rad_s,
+                        const std::string& tilt_deg) {
+    // A tilt towards y is a rotation about x.
+    return complaint({"platform.topology=one_axis", "platform.axis=" + axis,
+                      "propagate.initial_rate_rad_s=" + rate_rad_s,
+                      "propagate.initial_tilt_deg=" + tilt_deg,
+                      "propagate.initial_heading_deg=90"});
   };
-  EXPECT_EQ(about("z", {0, 0, 0.05}, 0.0), "");
-  EXPECT_EQ(about("x", {0.05, 0, 0}, 10.0), "");
-  EXPECT_THAT(about("z", {0, 1e-3, 0.05}, 0.0), HasSubstr("propagate.initial_rate_rad_s"));
-  EXPECT_THAT(about("z", {0, 0, 0.05}, 10.0), HasSubstr("propagate.initial_tilt_deg"));
-  EXPECT_THAT(about("y", {0, 0.05, 0}, 10.0), HasSubstr("propagate.initial_tilt_deg"));
+  EXPECT_EQ(about("z", "[0, 0, 0.05]", "0"), "");
+  EXPECT_EQ(about("x", "[0.05, 0, 0]", "10"), "");
+  EXPECT_THAT(about("z", "[0, 1e-3, 0.05]", "0"), HasSubstr("propagate.initial_rate_rad_s"));
+  EXPECT_THAT(about("z", "[0, 0, 0.05]", "10"), HasSubstr("propagate.initial_tilt_deg"));
+  EXPECT_THAT(about("y", "[0, 0.05, 0]", "10"), HasSubstr("propagate.initial_tilt_deg"));
 }
 
 // Rz(yaw) rotates body x; a tilt towards the heading rotates body z (docs/disturbances.md).
 TEST(Experiment, BeginsAtTheStatedHeadingAndYaw) {
-  SettingsNode root = experiment();
-  at(root, "propagate", "initial_tilt_deg") = node(20.0);
-  at(root, "propagate", "initial_heading_deg") = node(-130.0);
-  const auto begins = [&] { return read_propagation(settings_of(root)).initial; };
-  EXPECT_NEAR(heading_rad(begins()), -130 * degree_rad, 1e-12);
-  at(root, "propagate", "initial_yaw_deg") = node(75.0);
-  EXPECT_NEAR(heading_rad(begins()), -130 * degree_rad, 1e-12);
-  EXPECT_NEAR(yaw_rad(begins()), 75 * degree_rad, 1e-12);
-  EXPECT_NEAR(tilt_rad(begins()), 20 * degree_rad, 1e-12);
-  at(root, "propagate", "initial_tilt_deg") = node(150.0);  // beyond the horizontal
-  EXPECT_NEAR(yaw_rad(begins()), 75 * degree_rad, 1e-12);
-  EXPECT_NEAR(tilt_rad(begins()), 150 * degree_rad, 1e-12);
-  at(root, "propagate", "initial_tilt_deg") = node(0.0);
-  const Quat upright = begins().lab_from_body;
+  const std::string heading = "propagate.initial_heading_deg=-130",
+                    yaw = "propagate.initial_yaw_deg=75";
+  const auto begins = [&](const std::string& tilt_deg, std::vector<std::string> changes) {
+    changes.push_back("propagate.initial_tilt_deg=" + tilt_deg);
+    return read(changes).initial;
+  };
+  EXPECT_NEAR(heading_rad(begins("20", {heading})), -130 * degree_rad, 1e-12);
+  const PlatformState both = begins("20", {heading, yaw});
+  EXPECT_NEAR(heading_rad(both), -130 * degree_rad, 1e-12);
+  EXPECT_NEAR(yaw_rad(both), 75 * degree_rad, 1e-12);
+  EXPECT_NEAR(tilt_rad(both), 20 * degree_rad, 1e-12);
+  const PlatformState over = begins("150", {heading, yaw});  // beyond the horizontal
+  EXPECT_NEAR(yaw_rad(over), 75 * degree_rad, 1e-12);
+  EXPECT_NEAR(tilt_rad(over), 150 * degree_rad, 1e-12);
+  const Quat upright = begins("0", {heading, yaw}).lab_from_body;
   EXPECT_LT(upright.angularDistance(Quat(Eigen::AngleAxisd(75 * degree_rad, Vec3::UnitZ()))),
             1e-12);
-  EXPECT_THAT(complaint([](SettingsNode& r) {
-                at(r, "propagate", "initial_tilt_deg") = node(90.0);
-                at(r, "propagate", "initial_yaw_deg") = node(10.0);
-              }),
+  EXPECT_THAT(complaint({"propagate.initial_tilt_deg=90", "propagate.initial_yaw_deg=10"}),
               HasSubstr("propagate.initial_yaw_deg"));
 }
 
 // θ = θ₀ cos √(k/J) t of a twisted line from a turn and 60 degrees, for a third of a period.
 TEST(Experiment, BeginsAfterWholeTurns) {
-  SettingsNode root = experiment();
-  at(root, "platform", "topology") = node("one_axis");
-  at(root, "platform", "inertia_kg_m2") = node(0.05);
-  std::get<SettingsNode::Table>(root.value)["disturbance"] =
-      list({table({{"kind", node("tether")}, {"stiffness_N_m_per_rad", node(0.02)}})});
-  at(root, "propagate", "initial_tilt_deg") = node(0.0);
-  at(root, "propagate", "initial_rate_rad_s") = numbers({0, 0, 0});
-  at(root, "propagate", "initial_yaw_deg") = node(60.0);
-  at(root, "propagate", "initial_turns") = node(1);
-  at(root, "propagate", "duration_s") = node(2.0 * pi / 3.0 * std::sqrt(0.05 / 0.02));
-  PropagationRun run = read_propagation(settings_of(root));
+  PropagationRun run =
+      read({"platform.topology=one_axis", "platform.inertia_kg_m2=0.05",
+            "disturbance=[{kind='tether', stiffness_N_m_per_rad=0.02}]",
+            "propagate.initial_tilt_deg=0", "propagate.initial_rate_rad_s=[0, 0, 0]",
+            "propagate.initial_yaw_deg=60", "propagate.initial_turns=1",
+            "propagate.duration_s=" + toml(2.0 * pi / 3.0 * std::sqrt(0.05 / 0.02))});
   run.options.tolerance = 1e-11;
   const PlatformState end = propagate(run).states.back();
   const double angle_rad = 420.0 * degree_rad * std::cos(std::sqrt(0.02 / 0.05) * end.time_s);
   EXPECT_LT(angle_rad, -pi);
   EXPECT_NEAR(std::remainder(yaw_rad(end) - angle_rad, 2.0 * pi), 0.0, 1e-7);
-  EXPECT_THAT(complaint([](SettingsNode& r) { at(r, "propagate", "initial_turns") = node(1); }),
+  EXPECT_THAT(complaint({"propagate.initial_turns=1"}),
               HasSubstr("propagate.initial_turns: found a platform with several axes"));
 }
 
@@ -196,9 +163,7 @@ TEST(Experiment, BeginsAfterWholeTurns) {
 // that is 10 MB.
 TEST(Experiment, LongRunsHaveFewerRows) {
   const auto rate = [](double duration_s) {
-    SettingsNode root = experiment();
-    at(root, "propagate", "duration_s") = node(duration_s);
-    return read_propagation(settings_of(root)).output_rate_Hz;
+    return read({"propagate.duration_s=" + toml(duration_s)}).output_rate_Hz;
   };
   EXPECT_DOUBLE_EQ(rate(600.0), 10.0);
   EXPECT_DOUBLE_EQ(rate(4500.0), 10.0);
@@ -211,7 +176,7 @@ TEST(Experiment, LongRunsHaveFewerRows) {
 }
 
 TEST(Run, GivesHistoryPlotsAndRecording) {
-  const PropagationResult result = propagate(read_propagation(settings_of(experiment())));
+  const PropagationResult result = propagate(read());
   EXPECT_EQ(result.recording.rows(), 301u);
   EXPECT_NE(result.recording.find("gyro_z_rad_s"), nullptr);
   EXPECT_EQ(result.recording.find("command_x_N_m"), nullptr);
@@ -236,12 +201,12 @@ TEST(Run, GivesHistoryPlotsAndRecording) {
 
 // Drag only: the spin, the torque and the recorded rate decrease as exp(−c t/I).
 TEST(Run, SpinDecaysAsItsClosedForm) {
-  SettingsNode root = experiment();
-  std::get<SettingsNode::Table>(root.value)["disturbance"] =
-      table({{"kind", node("bearing_drag")}, {"coefficient_N_m_s", node(2e-3)}});
-  std::get<SettingsNode::Table>(root.value).erase("sensors");
-  at(root, "propagate", "initial_tilt_deg") = node(0.0);
-  const PropagationResult result = propagate(read_propagation(settings_of(root)));
+  std::string text = experiment_text;
+  text.erase(text.find("[sensors.camera]"),
+             text.find("[propagate]") - text.find("[sensors.camera]"));
+  const PropagationResult result = propagate(read(
+      {"disturbance={kind='bearing_drag', coefficient_N_m_s=2e-3}", "propagate.initial_tilt_deg=0"},
+      text));
   const Table& history = result.product.tables.front();
   const std::vector<double>& torque_N_m = history.column("torque_bearing_drag_z_N_m").values;
   for (size_t i = 0; i < result.recording.rows(); ++i) {
@@ -252,10 +217,8 @@ TEST(Run, SpinDecaysAsItsClosedForm) {
 }
 
 TEST(Run, EndsAtTheTiltStop) {
-  SettingsNode root = experiment();
-  at(root, "platform", "tilt_limit_deg") = node(12.0);
-  at(root, "propagate", "initial_rate_rad_s") = numbers({0, 0.05, 0});
-  const PropagationResult result = propagate(read_propagation(settings_of(root)));
+  const PropagationResult result =
+      propagate(read({"platform.tilt_limit_deg=12", "propagate.initial_rate_rad_s=[0, 0.05, 0]"}));
   ASSERT_EQ(result.events.size(), 1u);
   EXPECT_EQ(result.events[0].name, "tilt_stop");
   EXPECT_GT(tilt_rad(result.states.back()), 11.5 * degree_rad);
@@ -269,7 +232,7 @@ TEST(Power, ChargeIsTheIntegralOfTheBalance) {
   AttitudeModel model;
   model.platform.inertia_kg_m2 = Vec3(0.1, 0.1, 0.1).asDiagonal();
   model.platform.battery_voltage_V = 20.0;
-  model = with(model, "power_balance", {{"load_W", node(15.0)}, {"array_power_W", node(30.0)}});
+  model = with(model, "power_balance", "load_W = 15.0, array_power_W = 30.0");
   // A tilt that increases by 0.01 rad/s: ∫ 30 cos(0.01 t) dt = 3000 sin(0.01 t).
   const PlatformState end =
       propagated(model, state_of(model, Quat::Identity(), {0.01, 0, 0}), 100.0);
@@ -281,7 +244,7 @@ TEST(Power, FullBatteryTakesNoMore) {
   AttitudeModel model;
   model.platform.battery_voltage_V = 10.0;
   model.platform.battery_capacity_C = 3600.0;
-  model = with(model, "power_balance", {{"load_W", node(0.0)}, {"array_power_W", node(30.0)}});
+  model = with(model, "power_balance", "load_W = 0.0, array_power_W = 30.0");
   PlatformState start = state_of(model, Quat::Identity());
   start.charge_drawn_C = 60.0;
   const double taper_C = 0.002 * 3600;
@@ -291,7 +254,7 @@ TEST(Power, FullBatteryTakesNoMore) {
     EXPECT_NEAR(propagated(model, start, time_s).charge_drawn_C, expected_C, 1e-7) << time_s;
   }
   start.charge_drawn_C = 3600.0;
-  model = with(model, "power_balance", {{"load_W", node(90.0)}});
+  model = with(model, "power_balance", "load_W = 90.0");
   EXPECT_LE(propagated(model, start, 1000.0).charge_drawn_C, 3600.0 + 1e-6);
 }
 
@@ -299,7 +262,7 @@ TEST(Power, TableIsMetAtItsPointsAndStaysBetweenThem) {
   const std::vector<double> tilts = {0, 10, 20, 30}, powers = {30, 29, 22, 22};
   AttitudeModel model;
   model = with(model, "power_balance",
-               {{"load_W", node(0.0)}, {"tilt_deg", numbers(tilts)}, {"power_W", numbers(powers)}});
+               "load_W = 0.0, tilt_deg = " + toml(tilts) + ", power_W = " + toml(powers));
   const Dynamics dynamics(model);
   const auto power_at = [&](double tilt_deg) {
     return dynamics.at(state_of(model, turned(tilt_deg * degree_rad, {1, 1, 0}))).array_power_W[0];
@@ -311,17 +274,14 @@ TEST(Power, TableIsMetAtItsPointsAndStaysBetweenThem) {
   }
 }
 
-AttitudeModel wheeled(std::vector<std::pair<std::string, SettingsNode>> more = {}) {
+AttitudeModel wheeled(const std::string& further_keys) {
   AttitudeModel model;
   model.platform.inertia_kg_m2 = Vec3(0.11, 0.12, 0.19).asDiagonal();
   model.environment.gravity_lab_m_s2.setZero();
-  std::vector<std::pair<std::string, SettingsNode>> entries = {{"gain_N_m_per_rad", node(2e-3)},
-                                                               {"gain_N_m_s", node(2.2e-2)},
-                                                               {"wheel_inertia_kg_m2", node(1e-4)},
-                                                               {"largest_torque_N_m", node(2e-3)},
-                                                               {"largest_rate_rad_s", node(500.0)}};
-  entries.insert(entries.end(), more.begin(), more.end());
-  return with(model, "wheel_control", entries);
+  return with(model, "wheel_control",
+              "gain_N_m_per_rad = 2e-3, gain_N_m_s = 2.2e-2, wheel_inertia_kg_m2 = 1e-4, "
+              "largest_torque_N_m = 2e-3, largest_rate_rad_s = 500, " +
+                  further_keys);
 }
 
 Vec3 whole_momentum_lab(const AttitudeModel& model, const PlatformState& state) {
@@ -334,8 +294,7 @@ Vec3 whole_momentum_lab(const AttitudeModel& model, const PlatformState& state) 
 }
 
 TEST(Wheels, TurnThePlatformToItsTargetAndKeepTheMomentum) {
-  const AttitudeModel model =
-      wheeled({{"target_axis", numbers({1, 2, 3})}, {"target_angle_deg", node(40.0)}});
+  const AttitudeModel model = wheeled("target_axis = [1, 2, 3], target_angle_deg = 40.0");
   const PlatformState start = state_of(model, turned(-1.0, {3, 1, 0}), {0.01, -0.02, 0.03});
   const Vec3 momentum = whole_momentum_lab(model, start);
   const PlatformState end = propagated(model, start, 600.0, 1e-10);
@@ -348,7 +307,7 @@ TEST(Wheels, TurnThePlatformToItsTargetAndKeepTheMomentum) {
 // With the platform at rest a wheel turns on only if its motor gives c ω + τ, and the motor gives 2
 // k sin(error/2).
 TEST(Wheels, FrictionLeavesTheErrorThatItsTorqueNeeds) {
-  const AttitudeModel model = wheeled({{"viscous_N_m_s", node(1e-6)}, {"dry_N_m", node(2e-6)}});
+  const AttitudeModel model = wheeled("viscous_N_m_s = 1e-6, dry_N_m = 2e-6");
   const PlatformState start = state_of(model, Quat::Identity(), {0, 0, 0.03});
   const PlatformState end = propagated(model, start, 300.0, 1e-10);
   const double friction_N_m = 1e-6 * end.extra[2] + 2e-6;
@@ -359,8 +318,7 @@ TEST(Wheels, FrictionLeavesTheErrorThatItsTorqueNeeds) {
 
 TEST(Wheels, SaturateInTorqueAndRate) {
   // A large error saturates the motors.
-  const AttitudeModel model =
-      wheeled({{"target_axis", numbers({0, 0, 1})}, {"target_angle_deg", node(179.0)}});
+  const AttitudeModel model = wheeled("target_axis = [0, 0, 1], target_angle_deg = 179.0");
   const PlatformState start = state_of(model, Quat::Identity());
   EXPECT_NEAR(torque_body_N_m(model, start).norm(), 2e-3, 0.2 * 2e-3);
   EXPECT_LT(torque_body_N_m(model, start).norm(), 2e-3);

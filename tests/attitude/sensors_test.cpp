@@ -23,10 +23,6 @@ PropagationRun spinning(double rate_rad_s, double duration_s, double rows_per_s)
   return run;
 }
 
-void add_error(PropagationRun& run, const char* kind, const char* key, const SettingsNode& value) {
-  run.model = with(run.model, kind, {{key, value}});
-}
-
 const std::vector<double>& values(const Recording& recording, std::string_view name) {
   return recording.find(name)->values;
 }
@@ -83,7 +79,7 @@ TEST(Camera, NoiseIsAboutLabAxesAndOfTheSizeAsked) {
 // Before the start, the platform is assumed to rotate at its initial rate.
 TEST(Camera, WithLatencyReportsThePast) {
   PropagationRun run = spinning(0.2, 20.0, 10.0);
-  add_error(run, "attitude_latency", "latency_s", node(0.37));
+  run.model = with(run.model, "attitude_latency", "latency_s = 0.37");
   const Recording recording = propagate(run).recording;
   for (size_t i = 0; i < recording.rows(); ++i) {
     const double seen_s = recording.time_s[i] - 0.37;
@@ -93,7 +89,7 @@ TEST(Camera, WithLatencyReportsThePast) {
 
 TEST(Camera, MisalignmentTurnsWithTheBody) {
   PropagationRun run = spinning(0.2, 20.0, 10.0);
-  add_error(run, "camera_misalignment", "misalignment_rad", numbers({0.01, 0, 0}));
+  run.model = with(run.model, "camera_misalignment", "misalignment_rad = [0.01, 0, 0]");
   const PropagationResult result = propagate(run);
   for (size_t i = 0; i < result.states.size(); ++i) {
     const Quat expected = result.states[i].lab_from_body * turned(0.01, {1, 0, 0});
@@ -103,9 +99,9 @@ TEST(Camera, MisalignmentTurnsWithTheBody) {
 
 TEST(Gyro, BiasScaleAndMisalignmentAddUp) {
   PropagationRun run = spinning(0.2, 1.0, 10.0);
-  add_error(run, "gyro_bias", "bias_rad_s", numbers({1e-3, 2e-3, -3e-3}));
-  add_error(run, "gyro_scale", "scale", numbers({0.5, 0.5, 0.01}));
-  add_error(run, "gyro_misalignment", "misalignment_rad", numbers({0.002, 0.001, 0.3}));
+  run.model = with(run.model, "gyro_bias", "bias_rad_s = [1e-3, 2e-3, -3e-3]");
+  run.model = with(run.model, "gyro_scale", "scale = [0.5, 0.5, 0.01]");
+  run.model = with(run.model, "gyro_misalignment", "misalignment_rad = [0.002, 0.001, 0.3]");
   const Recording recording = propagate(run).recording;
   // m × ω of m = (0.002, 0.001, 0.3) and ω = (0, 0, 0.2).
   EXPECT_NEAR(values(recording, "gyro_x_rad_s")[5], 1e-3 + 0.001 * 0.2, 1e-15);

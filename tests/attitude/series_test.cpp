@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include "attitude/disturbances/fields/torque_surface.h"
 #include "attitude/disturbances/motion/vibration.h"

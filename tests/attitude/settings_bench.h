@@ -1,55 +1,37 @@
-// Settings as an experiment file would hold them, written in the test itself.
+// Settings as an experiment file holds them, written as TOML in the test itself.
 #pragma once
 
-#include <memory>
+#include <filesystem>
+#include <span>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "core/constants.h"
-#include "core/settings/settings.h"
+#include "core/text/format.h"
+#include "core/text/parse.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 
 inline constexpr double g = standard_gravity_m_s2;
 
-inline SettingsNode node(double x) {
-  SettingsNode n;
-  n.value = x;
-  return n;
+// A computed value as TOML: "rate_Hz = " + toml(2.0 * pi).
+inline std::string toml(double value) {
+  return shortest(value);
 }
-inline SettingsNode node(int x) {
-  return node(static_cast<double>(x));
+inline std::string toml(const std::filesystem::path& file) {
+  return "'" + file.string() + "'";
 }
-inline SettingsNode node(const char* text) {
-  SettingsNode n;
-  n.value = std::string(text);
-  return n;
+inline std::string toml(std::span<const double> values) {
+  return "[" + joined_text(values, ", ", shortest) + "]";
 }
-inline SettingsNode flag(bool on) {
-  SettingsNode n;
-  n.value = on;
-  return n;
+
+// The table of a list of keys: keys_node("mass_kg = 7, axis = [0, 0, 1]").
+inline SettingsNode keys_node(const std::string& keys) {
+  const SettingsNode root = parse_toml("keys = {" + keys + "}", "test.toml");
+  return std::get<SettingsNode::Table>(root.value).at("keys");
 }
-inline SettingsNode list(std::vector<SettingsNode> items) {
-  SettingsNode n;
-  n.value = SettingsNode::Array(std::move(items));
-  return n;
-}
-inline SettingsNode numbers(const std::vector<double>& values) {
-  std::vector<SettingsNode> items;
-  for (const double x : values) items.push_back(node(x));
-  return list(std::move(items));
-}
-inline SettingsNode table(const std::vector<std::pair<std::string, SettingsNode>>& entries) {
-  SettingsNode n;
-  SettingsNode::Table t;
-  for (const auto& [key, value] : entries) t[key] = value;
-  n.value = std::move(t);
-  return n;
-}
-inline Settings settings_of(const SettingsNode& root) {
-  return Settings(std::make_shared<SettingsNode>(root));
+inline Settings settings_of(const std::string& keys) {
+  return Settings(keys_node(keys));
 }
 
 }  // namespace photorque

@@ -12,8 +12,7 @@ namespace photorque {
 namespace {
 
 PropagationRun run_of(const std::string& toml) {
-  return read_propagation(
-      Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "puck.toml"))));
+  return read_propagation(Settings(parse_toml(toml, "puck.toml")));
 }
 
 const std::string puck = R"([platform]

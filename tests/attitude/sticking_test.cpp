@@ -33,9 +33,9 @@ struct Held {
     return 0.5 * start_rad_s * stops_s() + creeps_rad_s() * (time_s - stops_s());
   }
   AttitudeModel model() const {
-    return with(with(bench_model(), "turbine_torque", {{"torque_N_m", node(torque_N_m)}}),
+    return with(with(bench_model(), "turbine_torque", "torque_N_m = " + toml(torque_N_m)),
                 "dry_friction",
-                {{"torque_N_m", node(friction_N_m)}, {"creep_rate_rad_s", node(creep_rad_s)}});
+                "torque_N_m = " + toml(friction_N_m) + ", creep_rate_rad_s = " + toml(creep_rad_s));
   }
 };
 
@@ -92,7 +92,7 @@ TEST(Sticking, HasExactDerivatives) {
 // it stops, so ∂ω/∂τ = −t/I before the stop and 0 afterwards.
 TEST(Sticking, DerivativesThatDiedAwayCostNoSteps) {
   constexpr double friction_N_m = 1e-3, start_rad_s = 1.0;
-  AttitudeModel model = with(bench_model(), "dry_friction", {{"torque_N_m", node(friction_N_m)}});
+  AttitudeModel model = with(bench_model(), "dry_friction", "torque_N_m = " + toml(friction_N_m));
   model.holds_attitude = true;
   const double stops_s = start_rad_s * I_kg_m2 / friction_N_m;
   const double times_s[] = {0.5 * stops_s, 5.0 * stops_s};
@@ -111,8 +111,8 @@ TEST(Sticking, DerivativesThatDiedAwayCostNoSteps) {
 TEST(Sticking, EveryReversalIsSeen) {
   constexpr double k = 2e-4, friction_N_m = 1e-6;
   const AttitudeModel model =
-      with(with(bench_model(), "tether", {{"stiffness_N_m_per_rad", node(k)}}), "dry_friction",
-           {{"torque_N_m", node(friction_N_m)}, {"creep_rate_rad_s", node(1e-10)}});
+      with(with(bench_model(), "tether", "stiffness_N_m_per_rad = " + toml(k)), "dry_friction",
+           "torque_N_m = " + toml(friction_N_m) + ", creep_rate_rad_s = 1e-10");
   const Dynamics dynamics(model);
   const double half_period_s = pi * std::sqrt(I_kg_m2 / k);
   for (int start = 0; start < 10; ++start) {
@@ -137,8 +137,8 @@ struct OneAxis {
   AttitudeModel model() const {
     AttitudeModel model = bench_model();
     model.platform.topology = Topology::one_axis;
-    return with(with(std::move(model), "tether", {{"stiffness_N_m_per_rad", node(k)}}),
-                "dry_friction", {{"torque_N_m", node(friction_N_m)}});
+    return with(with(std::move(model), "tether", "stiffness_N_m_per_rad = " + toml(k)),
+                "dry_friction", "torque_N_m = " + toml(friction_N_m));
   }
   double half_period_s() const { return pi * std::sqrt(I_kg_m2 / k); }
   // A half swing is a cosine about the centre ±τ/k.
@@ -235,7 +235,7 @@ TEST(Tether, CountsItsTurns) {
   constexpr double k = 2e-4, amplitude_rad = 6 * pi;
   const double omega_1_s = std::sqrt(k / I_kg_m2);
   const AttitudeModel model =
-      with(bench_model(), "tether", {{"stiffness_N_m_per_rad", node(k)}, {"winds_up", flag(true)}});
+      with(bench_model(), "tether", "stiffness_N_m_per_rad = " + toml(k) + ", winds_up = true");
   const PlatformState start = state_of(model, Quat::Identity(), {0, 0, amplitude_rad * omega_1_s});
   for (const double time_s : {10.0, 40.0, 100.0, 300.0}) {
     const PlatformState end = propagated(model, start, time_s);

@@ -16,7 +16,7 @@ namespace photorque {
 namespace {
 
 Environment environment_of(const std::string& toml) {
-  const Settings settings(std::make_shared<const SettingsNode>(parse_toml(toml, "sun.toml")));
+  const Settings settings(parse_toml(toml, "sun.toml"));
   Environment environment = read_environment(settings);
   settings.finish();
   return environment;
@@ -185,7 +185,7 @@ TEST(Sun, ComesFromATableToo) {
 TEST(Sun, PressesBesideTheCentreOfMass) {
   AttitudeModel model = bench_model();
   model.environment = environment_of("[sun]\ndirection = [0, 5, 0]\ndistance_au = 2");
-  model = with(model, "radiation_pressure", {{"area_moment_m3", numbers({0, 0, 0.5})}});
+  model = with(model, "radiation_pressure", "area_moment_m3 = [0, 0, 0.5]");
   const double pressure_Pa = 1361.0 / 299792458.0 / 4.0;
   const Vec3 upright = torque_body_N_m(model, Quat::Identity());
   EXPECT_NEAR((upright - pressure_Pa * Vec3(0.5, 0, 0)).norm(), 0.0, 1e-18);
@@ -193,8 +193,7 @@ TEST(Sun, PressesBesideTheCentreOfMass) {
   const double a = 0.4;
   const Vec3 leaning = torque_body_N_m(model, turned(a, Vec3::UnitX()));
   EXPECT_NEAR((leaning - pressure_Pa * Vec3(0.5 * std::cos(a), 0, 0)).norm(), 0.0, 1e-18);
-  EXPECT_THROW(make(bench_model(), "radiation_pressure", {{"area_moment_m3", numbers({0, 0, 1})}}),
-               InputError);
+  EXPECT_THROW(make(bench_model(), "radiation_pressure", "area_moment_m3 = [0, 0, 1]"), InputError);
 }
 
 }  // namespace

@@ -374,27 +374,19 @@ TEST(CameraWithGeometry, MakesTheNoiseOfARecording) {
 }
 
 TEST(CameraSettings, RejectImpossibleValues) {
-  const auto camera = [](const std::vector<std::pair<std::string, SettingsNode>>& changed) {
-    std::vector<std::pair<std::string, SettingsNode>> entries = {
-        {"markers_m", list({numbers({0, 0, 0.03}), numbers({0.1, 0, 0.03}), numbers({0, 0.1, 0.03}),
-                            numbers({-0.1, 0, 0.03})})},
-        {"intensity_W_sr", node(1.7e-5)},
-        {"focal_length_mm", node(8)},
-        {"pixel_um", node(4.8)},
-        {"resolution", numbers({1280, 1024})},
-        {"exposure_s", node(45e-6)},
-        {"position_m", numbers({0, 0, 1})}};
-    for (const auto& one : changed) {
-      std::erase_if(entries, [&](const auto& e) { return e.first == one.first; });
-      entries.push_back(one);
-    }
-    return read_tracking_camera(settings_of(table(entries)));
+  const auto camera = [](const std::string& change) {
+    SettingsNode keys = keys_node(
+        "markers_m = [[0, 0, 0.03], [0.1, 0, 0.03], [0, 0.1, 0.03], [-0.1, 0, 0.03]], "
+        "intensity_W_sr = 1.7e-5, focal_length_mm = 8, pixel_um = 4.8, resolution = [1280, "
+        "1024], exposure_s = 45e-6, position_m = [0, 0, 1]");
+    apply_override(keys, change);
+    return read_tracking_camera(Settings(keys));
   };
-  EXPECT_TRUE(camera({}));
-  EXPECT_THROW(camera({{"exposure_s", node(1.0)}}), InputError);      // saturated
-  EXPECT_THROW(camera({{"aim_m", numbers({0, 0, 2})}}), InputError);  // looks away
-  EXPECT_THROW(camera({{"resolution", numbers({100})}}), InputError);
-  EXPECT_THROW(camera({{"marker_error_m", list({numbers({0, 0, 0})})}}), InputError);
+  EXPECT_TRUE(camera("exposure_s=45e-6"));
+  EXPECT_THROW(camera("exposure_s=1.0"), InputError);   // saturated
+  EXPECT_THROW(camera("aim_m=[0, 0, 2]"), InputError);  // looks away
+  EXPECT_THROW(camera("resolution=[100]"), InputError);
+  EXPECT_THROW(camera("marker_error_m=[[0, 0, 0]]"), InputError);
 }
 
 }  // namespace

@@ -9,8 +9,6 @@
 namespace photorque {
 namespace {
 
-using Entries = std::vector<std::pair<std::string, SettingsNode>>;
-
 // A free body that is the same about all axes.
 AttitudeModel free_body(double inertia_kg_m2) {
   AttitudeModel model;
@@ -21,24 +19,21 @@ AttitudeModel free_body(double inertia_kg_m2) {
   return model;
 }
 
-Vec3 torque_at(const Entries& entries, double time_s) {
-  const AttitudeModel model = with(free_body(1.0), "wheel_imbalance", entries);
+Vec3 torque_at(const std::string& keys, double time_s) {
+  const AttitudeModel model = with(free_body(1.0), "wheel_imbalance", keys);
   return torque_body_N_m(model, Quat::Identity(), Vec3::Zero(), time_s);
 }
 
 // 1 g cm at 3000 rpm pulls with 1e-5 kg m (100π/s)² = 0.98696 N, 1 g cm² turns with 9.8696e-3 N m.
 TEST(WheelImbalance, PullsByTheSquareOfItsSpeed) {
-  const Entries pulls = {{"axis", numbers({0, 0, 2})},
-                         {"static_imbalance_g_cm", node(1.0)},
-                         {"position_m", numbers({0, 0, 0.2})},
-                         {"speed_rpm", node(3000.0)}};
+  const std::string pulls =
+      "axis = [0, 0, 2], static_imbalance_g_cm = 1.0, position_m = [0, 0, 0.2], speed_rpm = 3000.0";
   EXPECT_LT((torque_at(pulls, 0.0) - Vec3(0, 0.2 * 0.98696044, 0)).norm(), 1e-8);
   // A quarter of a turn later, 5 ms, the force is along y.
   EXPECT_LT((torque_at(pulls, 5e-3) - Vec3(-0.2 * 0.98696044, 0, 0)).norm(), 1e-8);
-  const Entries turns = {{"axis", numbers({1, 0, 0})},
-                         {"dynamic_imbalance_g_cm2", node(1.0)},
-                         {"dynamic_phase_deg", node(90.0)},
-                         {"speed_rpm", node(3000.0)}};
+  const std::string turns =
+      "axis = [1, 0, 0], dynamic_imbalance_g_cm2 = 1.0, dynamic_phase_deg = 90.0, "
+      "speed_rpm = 3000.0";
   EXPECT_LT((torque_at(turns, 0.0) - Vec3(0, 0, 9.8696044e-3)).norm(), 1e-10);
 }
 
@@ -48,14 +43,13 @@ TEST(WheelImbalance, ABodySwingsByTheSameAngleAtEverySpeed) {
   const double inertia_kg_m2 = 0.5, product_kg_m2 = 4e-7, static_kg_m = 2e-6, arm_m = 0.3;
   for (const double speed_rad_s : {3.0, 100.0, 600.0}) {
     for (const bool is_static : {false, true}) {
-      const Entries entries = is_static
-                                  ? Entries{{"static_imbalance_g_cm", node(1e5 * static_kg_m)},
-                                            {"position_m", numbers({0, 0, arm_m})}}
-                                  : Entries{{"dynamic_imbalance_g_cm2", node(1e7 * product_kg_m2)}};
-      Entries all = entries;
-      all.emplace_back("axis", numbers({0, 0, 1}));
-      all.emplace_back("speed_rad_s", node(speed_rad_s));
-      const AttitudeModel model = with(free_body(inertia_kg_m2), "wheel_imbalance", all);
+      const std::string imbalance = is_static
+                                        ? "static_imbalance_g_cm = " + toml(1e5 * static_kg_m) +
+                                              ", position_m = [0, 0, " + toml(arm_m) + "]"
+                                        : "dynamic_imbalance_g_cm2 = " + toml(1e7 * product_kg_m2);
+      const AttitudeModel model =
+          with(free_body(inertia_kg_m2), "wheel_imbalance",
+               "axis = [0, 0, 1], speed_rad_s = " + toml(speed_rad_s) + ", " + imbalance);
       const double angle_rad = (is_static ? arm_m * static_kg_m : product_kg_m2) / inertia_kg_m2;
       // The torque is along x at t = 0, or along y for a force along x.
       const auto swing = [&](double phase) -> Vec3 {
@@ -81,8 +75,7 @@ TEST(WheelImbalance, ABodySwingsByTheSameAngleAtEverySpeed) {
 TEST(WheelImbalance, FollowsTheMeasuredSpeed) {
   AttitudeModel model = free_body(1.0);
   model.schedule.append(0.0, {.wheel = {0.0, {0.0, 40.0, 0.0}, {0.0, 2.5, 0.0}}});
-  model = with(model, "wheel_imbalance",
-               {{"axis", numbers({0, 1, 0})}, {"dynamic_imbalance_g_cm2", node(30.0)}});
+  model = with(model, "wheel_imbalance", "axis = [0, 1, 0], dynamic_imbalance_g_cm2 = 30.0");
   const double time_s = 3.0, angle_rad = 40.0 * time_s + 0.5 * 2.5 * time_s * time_s;
   const PlatformState end = propagated(model, state_of(model, Quat::Identity()), time_s);
   const double square = std::pow(40.0 + 2.5 * time_s, 2);
@@ -92,11 +85,9 @@ TEST(WheelImbalance, FollowsTheMeasuredSpeed) {
 }
 
 TEST(WheelImbalance, RefusesAWheelWithoutImbalanceOrPlace) {
-  const Entries axis = {{"axis", numbers({0, 0, 1})}};
-  EXPECT_THROW(torque_at(axis, 0.0), InputError);
-  EXPECT_THROW(torque_at({axis[0], {"static_imbalance_g_cm", node(1.0)}}, 0.0), InputError);
-  EXPECT_THROW(torque_at({{"axis", numbers({0, 0, 0})}, {"dynamic_imbalance_g_cm2", node(1.0)}}, 0),
-               InputError);
+  EXPECT_THROW(torque_at("axis = [0, 0, 1]", 0.0), InputError);
+  EXPECT_THROW(torque_at("axis = [0, 0, 1], static_imbalance_g_cm = 1.0", 0.0), InputError);
+  EXPECT_THROW(torque_at("axis = [0, 0, 0], dynamic_imbalance_g_cm2 = 1.0", 0), InputError);
 }
 
 }  // namespace

@@ -17,8 +17,7 @@ SettingsNode leaf(
 }
 
 Settings lab(SettingsNode::Table table) {
-  return Settings(
-      std::make_shared<const SettingsNode>(SettingsNode{std::move(table), {"lab.toml", 1}}));
+  return Settings(SettingsNode{std::move(table), {"lab.toml", 1}});
 }
 
 TEST(Units, EveryKeyOfAQuantityGivesSI) {
@@ -70,7 +69,8 @@ TEST(Keys, UnreadKeyLikeNoneListsThoseThatAreKnown) {
   const Settings settings = lab({{"wavelength_nm", leaf(730.0, 4)}});
   for (const char* key : {"power_W", "exponent"}) settings.number_or(key, 0.0);
   EXPECT_EQ(refusal_of([&] { settings.finish(); }),
-            "lab.toml:4: wavelength_nm: found an unknown key, expected one of exponent, power_W");
+            "lab.toml:4: wavelength_nm: found an unknown key, expected one of \"exponent\", "
+            "\"power_W\"");
 }
 
 TEST(Keys, MissingKeyPointsToItsMisspelling) {

@@ -16,8 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Diagnosis diagnose_case(const fs::path& folder) {
-  const Settings settings(
-      std::make_shared<const SettingsNode>(read_toml(folder / "experiment.toml")));
+  const Settings settings(parse_toml(read_file(folder / "experiment.toml"), "experiment.toml"));
   const auto recording = [&](const char* name) {
     return std::vector<NamedRecording>{{name, read_recording(folder / name)}};
   };
@@ -61,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(All, CaseOfAnotherProgram,
 // that the experiment calls free, and that rest on something because it names a bearing's drag.
 std::set<std::string> names_found(const std::string& name, const std::vector<std::string>& runs) {
   const fs::path folder = outside::reference_data("faults") / name;
-  const Settings settings(std::make_shared<const SettingsNode>(read_toml(folder / "belief.toml")));
+  const Settings settings(parse_toml(read_file(folder / "belief.toml"), "belief.toml"));
   std::vector<std::vector<NamedRecording>> sets(2);
   for (size_t i = 0; i < runs.size(); ++i) {
     sets[i].push_back({runs[i], read_recording(folder / runs[i])});

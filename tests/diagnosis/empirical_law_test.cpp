@@ -82,8 +82,7 @@ Diagnosis reported(const Fitted& f) {
 // improved.toml, propagated, follows the fitted model.
 void expect_same_flight(const Fitted& f, const Diagnosis& d) {
   const std::string text = improved_experiment(TomlDocument(nominal_text, "nominal.toml"), d, ".");
-  PropagationRun run = read_propagation(
-      Settings(std::make_shared<const SettingsNode>(parse_toml(text, "improved.toml"))));
+  PropagationRun run = read_propagation(Settings(parse_toml(text, "improved.toml")));
   run.options.tolerance = 1e-10;
   const std::vector<PlatformState> propagated = propagate(run).states;
   const Dynamics dynamics(f.trial.fit.best.model_of(0, f.runs.front()));

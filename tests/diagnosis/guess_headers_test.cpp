@@ -318,7 +318,7 @@ TEST_F(Headers, OfCurvesThatAMeterMade) {
     const fs::path file = test_file("meter.csv", text);
     const std::string guessed = guess_experiment({file}, testing::TempDir());
     EXPECT_THAT(guessed, HasSubstr("cells_in_series = 36\n")) << sign << ", " << beyond_A;
-    const Settings root(std::make_shared<const SettingsNode>(parse_toml(guessed, "guess.toml")));
+    const Settings root(parse_toml(guessed, "guess.toml"));
     const ModuleDesign design = read_module(root, testing::TempDir());
     EXPECT_EQ(diagnose_module(design, {read_light_recording(file, {})}, {}).verdict,
               Verdict::consistent)
@@ -384,7 +384,7 @@ TEST_F(Headers, MayBeCommentsOrSeparatedOtherwise) {
     for (int i = 0; i < 30; ++i) text += printed(row, i, i * i, 100 - i);
     const fs::path file = test_file("comment.txt", text);
     const std::string toml = guess_experiment({file}, ".");
-    const Settings root(std::make_shared<const SettingsNode>(parse_toml(toml, "guess.toml")));
+    const Settings root(parse_toml(toml, "guess.toml"));
     const Recording read = read_recording(file, read_recording_options(root.table("recording")));
     ASSERT_EQ(read.rows(), 30U) << header;
     ASSERT_NE(read.find("y_m"), nullptr) << header;

@@ -35,7 +35,7 @@ using testing::Not;
 using testing::SizeIs;
 
 Settings settings_in(const std::string& toml) {
-  return Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "guess.toml")));
+  return Settings(parse_toml(toml, "guess.toml"));
 }
 
 // The rates of a body that turns freely, a wheel on its z axis spinning up at `wheel_rad_s2`.

@@ -37,7 +37,7 @@ noise_arcsec = [37, 37, 12]
 noise_rad_s = 2e-4)";
 
 Settings settings_from(const std::string& text) {
-  return Settings(std::make_shared<const SettingsNode>(parse_toml(text, "improved.toml")));
+  return Settings(parse_toml(text, "improved.toml"));
 }
 
 std::string improved(const std::string& text, const Diagnosis& diagnosis) {

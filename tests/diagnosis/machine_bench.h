@@ -14,8 +14,7 @@
 namespace photorque {
 
 inline NominalModel machine(const std::string& toml) {
-  return read_attitude_model(
-      Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "machine.toml"))));
+  return read_attitude_model(Settings(parse_toml(toml, "machine.toml")));
 }
 
 // Rows of named channels at even times.

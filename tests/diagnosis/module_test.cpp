@@ -286,9 +286,9 @@ TEST(ModuleDiagnosis, NotesAReferenceOfTheOtherSign) {
         std::to_string(curve.voltage_V[i]) + ',' + std::to_string(-curve.current_A[i]) + '\n';
   }
   const fs::path file = new_file(reference, ".csv");
-  const Settings root(std::make_shared<const SettingsNode>(
+  const Settings root(
       parse_toml("module = { cells_in_series = 12, reference_curve = \"" + file.string() + "\" }",
-                 "experiment.toml")));
+                 "experiment.toml"));
   const Diagnosis d = diagnose_module(read_module(root, {}), {measured(Network(0).curve(), 2)}, {});
   EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
   EXPECT_THAT(d.warnings,
@@ -539,9 +539,9 @@ TEST(ModuleDiagnosis, NamesNothingInMeasuredCurvesOfAHealthyModule) {
                                             {"c1740.csv", 333.95},
                                             {"c2340.csv", 326.59},
                                             {"c2880.csv", 304.31}}) {
-    SettingsNode node = read_toml(folder / "experiment.toml");
+    SettingsNode node = parse_toml(read_file(folder / "experiment.toml"), "experiment.toml");
     apply_override(node, "module.temperature_K=" + std::to_string(temperature_K));
-    const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
+    const Settings root(std::move(node));
     const ModuleDesign design = read_module(root, folder);
     const Diagnosis d = diagnose_module(design, {read_light_recording(folder / file, {})}, {});
     EXPECT_TRUE(d.effects.empty()) << file << ": " << d.sentence;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/text/format.h"
+#include "tests/base64.h"
 #include "tests/fuzz/random_bytes.h"
 
 namespace {
@@ -93,25 +94,6 @@ void collect(json& node, std::vector<json*>& all) {
   for (json& item : node) collect(item, all);
 }
 
-// Source: RFC 4648, section 4; anything else ends it.
-std::string bytes_of_base64(const std::string& text) {
-  static const std::string letters =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  uint32_t bits = 0;
-  int held = 0;
-  for (const char letter : text) {
-    const size_t digit = letters.find(letter);
-    if (digit == std::string::npos) break;
-    bits = bits << 6 | static_cast<uint32_t>(digit);
-    held += 6;
-    if (held < 8) continue;
-    held -= 8;
-    bytes += static_cast<char>(bits >> held & 0xff);
-  }
-  return bytes;
-}
-
 // Bytes in base64 stay base64.
 std::string with_text_changed(const std::string& text) {
   const size_t comma = text.find(";base64,");
@@ -120,7 +102,7 @@ std::string with_text_changed(const std::string& text) {
   }
   const size_t begin = comma + 8;
   const std::string bytes =
-      photorque::fuzz::with_bytes_changed(bytes_of_base64(text.substr(begin)));
+      photorque::fuzz::with_bytes_changed(photorque::test::bytes_of_base64(text.substr(begin)));
   return text.substr(0, begin) + photorque::base64(std::as_bytes(std::span(bytes)));
 }
 

@@ -196,7 +196,7 @@ TEST_F(MapFiles, AMapInAPageHasTheColoursOfItsBins) {
     const size_t begin = at + mark.size();
     const std::string_view digits =
         std::string_view(svg).substr(begin, svg.find('"', begin) - begin);
-    write_file_whole(folder / "bins.png", decoded_base64(digits));
+    write_file_whole(folder / "bins.png", test::bytes_of_base64(digits));
     pictures.push_back(read_page(folder / "bins.png", 0));
   }
   ASSERT_EQ(pictures.size(), 2u);

@@ -106,7 +106,7 @@ TEST(FreeCorner, CoversNoCurve) {
   const Legend legend{{0}, 120.0, 60.0};
   int found = 0;
   for (int trial = 0; trial < 300; ++trial) {
-    Plot::Curve curve{"a", {}, {}, {}, false};
+    Plot::Curve curve{"a"};
     for (int i = 0; i < 10; ++i) {
       curve.x.push_back(uniform(generator));
       curve.y.push_back(uniform(generator));
@@ -122,7 +122,7 @@ TEST(FreeCorner, CoversNoCurve) {
 }
 
 TEST(FreeCorner, IsNowhereWhenCurvesFillTheFrame) {
-  Plot::Curve zigzag{"a", {}, {}, {}, false};
+  Plot::Curve zigzag{"a"};
   for (int i = 0; i <= 100; ++i) {
     zigzag.x.push_back(0.01 * i);
     zigzag.y.push_back(i % 2);
@@ -156,7 +156,7 @@ int pixels_of_colour(const Picture& picture, const Rgb& colour, int first_row, i
 Plot constant_plot() {
   Plot plot;
   plot.title = "Constant";
-  plot.curves = {{"", {0.0, 1.0}, {5.0, 5.0}, {}, false}};
+  plot.curves = {{"", {0.0, 1.0}, {5.0, 5.0}}};
   return plot;
 }
 
@@ -210,7 +210,7 @@ TEST(FreeCorner, KeepsOffBars) {
 
 TEST(PlotPicture, StacksPanels) {
   Plot plot = constant_plot();
-  plot.below = {{"b", {{"", {0.0, 1.0}, {1.0, 2.0}, {}, false}}, false}};
+  plot.below = {{"b", {{"", {0.0, 1.0}, {1.0, 2.0}}}}};
   const Picture picture = plot_picture(plot, {});
   EXPECT_GT(pixels_of_colour(picture, blue, 0, picture.height / 2), 100);
   EXPECT_GT(pixels_of_colour(picture, blue, picture.height / 2, picture.height), 100);

@@ -17,12 +17,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Map map_of(int width, int height, std::vector<double> value) {
-  Map map;
-  map.name = "irradiance";
-  map.title = "Irradiance";
-  map.unit = "W/m²";
-  map.width = width;
-  map.height = height;
+  Map map{"irradiance", "Irradiance", "W/m²", width, height};
   map.value = std::move(value);
   map.standard_error.assign(map.value.size(), 0.1);
   return map;

@@ -10,21 +10,13 @@
 #include "core/product.h"
 #include "core/provenance.h"
 #include "images/drawing/colour.h"
+#include "tests/base64.h"
 
 namespace photorque {
 
 // Values without two alike, so that no mix-up of rows, columns or channels goes unnoticed.
 inline Map sample_map() {
-  Map map;
-  map.name = "irradiance_plate";
-  map.title = "Irradiance on plate";
-  map.unit = "W/m²";
-  map.width = 7;
-  map.height = 5;
-  map.x_low = -0.35;
-  map.x_high = 0.35;
-  map.y_low = 0.1;
-  map.y_high = 0.6;
+  Map map{"irradiance_plate", "Irradiance on plate", "W/m²", 7, 5, -0.35, 0.35, 0.1, 0.6};
   for (int i = 0; i < map.width * map.height; ++i) {
     map.value.push_back(100.0 / 3.0 * (i + 1));
     map.standard_error.push_back(0.01 * (i + 1));
@@ -40,7 +32,7 @@ inline Plot sample_plot() {
   plot.y_label = "current [A]";
   plot.curves = {{"traced", {0.0, 1.0, 2.0}, {1.2, 1.1, 0.2}, {0.1, 0.1, 0.1}, false},
                  {"measured", {0.5, 1.5}, {1.15, 0.9}, {0.05, 0.05}, true}};
-  plot.below = {{"power [W]", {{"", {0.0, 1.0, 2.0}, {0.0, 1.1, 0.4}, {}, false}}, false}};
+  plot.below = {{"power [W]", {{"", {0.0, 1.0, 2.0}, {0.0, 1.1, 0.4}}}}};
   return plot;
 }
 
@@ -67,29 +59,11 @@ inline Provenance sample_provenance() {
   return provenance;
 }
 
-// The bytes of base64 digits, by shifting bits.
-inline std::string decoded_base64(std::string_view text) {
-  static const std::string digits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    if (c == '=') break;
-    bits = bits << 6 | static_cast<uint32_t>(digits.find(c));
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    bytes += static_cast<char>(bits >> count & 0xFFu);
-  }
-  return bytes;
-}
-
 // The SVG document in an <img> element.
 inline std::string svg_of(const std::string& img) {
   const std::string mark = "data:image/svg+xml;base64,";
   const size_t begin = img.find(mark) + mark.size();
-  return decoded_base64(std::string_view(img).substr(begin, img.find('"', begin) - begin));
+  return test::bytes_of_base64(std::string_view(img).substr(begin, img.find('"', begin) - begin));
 }
 
 // Corners of a path, in its order.

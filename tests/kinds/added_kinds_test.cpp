@@ -18,7 +18,7 @@ namespace {
 const std::string added = "added_torque";
 
 TEST(AddedDisturbance, IsReadFromAnExperiment) {
-  const AttitudeModel model = with(bench_model(), added, {{"torque_N_m", node(2e-4)}});
+  const AttitudeModel model = with(bench_model(), added, "torque_N_m = 2e-4");
   const PlatformState state = state_of(model, Quat::Identity(), Vec3::Zero(), 0.0, 1800.0);
   EXPECT_DOUBLE_EQ(torque_body_N_m(model, state).x(), 1e-4);
 }
@@ -35,7 +35,7 @@ TEST(AddedDisturbance, IsScreened) {
 }
 
 TEST(AddedDisturbance, IsRanked) {
-  AttitudeModel model = with(bench_model(), added, {{"torque_N_m", node(2e-4)}});
+  AttitudeModel model = with(bench_model(), added, "torque_N_m = 2e-4");
   const PlatformState state = state_of(model, Quat::Identity(), Vec3::Zero(), 0.0, 1800.0);
   const Budget budget = make_budget(model, state);
   ASSERT_EQ(budget.entries.size(), 1u);
@@ -55,14 +55,14 @@ TEST(AddedSource, IsInTheRegistry) {
   const std::vector<SourceKind> all = all_source_kinds();
   const auto kind = std::ranges::find(all, "added_source", &SourceKind::name);
   ASSERT_NE(kind, all.end());
-  EXPECT_EQ(kind->make(settings_of(table({{"name", node("beam")}})), {})[0].name, "beam");
+  EXPECT_EQ(kind->make(settings_of("name = 'beam'"), {})[0].name, "beam");
 }
 
 TEST(AddedReceiver, IsInTheRegistry) {
   const std::vector<ReceiverKind> all = all_receiver_kinds();
   const auto kind = std::ranges::find(all, "added_receiver", &ReceiverKind::name);
   ASSERT_NE(kind, all.end());
-  EXPECT_EQ(kind->make(settings_of(table({})), Scene{}).receiver->bins(), 1u);
+  EXPECT_EQ(kind->make(settings_of(""), Scene{}).receiver->bins(), 1u);
 }
 
 TEST(AddedWriter, WritesEveryProduct) {

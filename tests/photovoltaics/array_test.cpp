@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 
 #include "core/numerics/random.h"
 #include "reference.h"
@@ -14,21 +13,8 @@
 namespace photorque {
 namespace {
 
-using reference::node;
-
-// Text, and whole and other numbers, of the table [array].
-SettingsNode text(const char* x) {
-  return node(std::string(x));
-}
-SettingsNode whole(int64_t x) {
-  return node(x);
-}
-SettingsNode number(double x) {
-  return node(x);
-}
-
 SettingsNode::Table ten_by_ten() {
-  return {{"cells", reference::list({whole(10), whole(10)})}};
+  return {{"cells", test::numbers_node({10, 10})}};
 }
 
 ArrayDesign design(SettingsNode::Table table = ten_by_ten()) {
@@ -54,20 +40,20 @@ TEST(PhotovoltaicArray, EvenLightGivesTheSumOfItsCells) {
 }
 
 SettingsNode tables(std::initializer_list<SettingsNode::Table> all) {
-  return node(SettingsNode::Array(all.begin(), all.end()));
+  return {SettingsNode::Array(all.begin(), all.end())};
 }
 
 // Two cells in series without diodes: at one current their voltages add up. The numbers that are
 // stated for the second belong to its area, 0.01 m², those that are not to any.
 TEST(PhotovoltaicArray, ACellThatDiffersHasItsOwnCircuit) {
   SettingsNode::Table table = ten_by_ten();
-  table["cells"] = reference::list({whole(2), whole(1)});
-  table["bypass"] = text("none");
-  table["cell_override"] = tables({{{"index", whole(1)},
-                                    {"photocurrent_factor", number(0.5)},
-                                    {"shunt_ohm", number(50.0)},
-                                    {"series_ohm", number(0.02)},
-                                    {"reference_area_m2", number(0.01)}}});
+  table["cells"] = test::numbers_node({2, 1});
+  table["bypass"] = {"none"};
+  table["cell_override"] = tables({{{"index", {1}},
+                                    {"photocurrent_factor", {0.5}},
+                                    {"shunt_ohm", {50.0}},
+                                    {"series_ohm", {0.02}},
+                                    {"reference_area_m2", {0.01}}}});
   const ArrayDesign array = design(table);
   const ArrayResult result =
       evaluate(array, array_light(20, 20, 0.2, 0.1, std::vector<double>(400, 800.0)));
@@ -93,10 +79,10 @@ TEST(PhotovoltaicArray, ACellThatDiffersHasItsOwnCircuit) {
 TEST(PhotovoltaicArray, ACellWithoutPhotocurrentIsACellInTheDark) {
   std::vector<double> irradiance(100, 1000.0);
   SettingsNode::Table table = ten_by_ten();
-  table["bypass_every"] = whole(20);
+  table["bypass_every"] = {20};
   SettingsNode::Table dead = table;
-  dead["cell_override"] = tables({{{"index", whole(81)}, {"photocurrent_factor", number(1.0)}},
-                                  {{"index", whole(37)}, {"photocurrent_factor", number(0.0)}}});
+  dead["cell_override"] = tables({{{"index", {81}}, {"photocurrent_factor", {1.0}}},
+                                  {{"index", {37}}, {"photocurrent_factor", {0.0}}}});
   const double dead_W =
       evaluate(design(dead), array_light(10, 10, 0.2, 0.2, irradiance)).power_W.value;
   irradiance[37] = 0.0;
@@ -108,8 +94,7 @@ TEST(PhotovoltaicArray, ACellWithoutPhotocurrentIsACellInTheDark) {
 // 1 + s (T - 298.15 K) of each cell's own slope s.
 TEST(PhotovoltaicArray, EachCellWarmsByItsOwnSlope) {
   SettingsNode::Table table = ten_by_ten();
-  table["cell_override"] =
-      tables({{{"index", whole(2)}, {"photocurrent_slope_per_K", number(0.0)}}});
+  table["cell_override"] = tables({{{"index", {2}}, {"photocurrent_slope_per_K", {0.0}}}});
   ArrayDesign array = design(table);
   array.cell.photocurrent_slope_1_K = 5e-4;
   const double reference_K = array.cell.reference.temperature_K;
@@ -125,16 +110,16 @@ TEST(PhotovoltaicArray, OverridesThatMeanNothingAreRefused) {
     table["cell_override"] = tables(overrides);
     EXPECT_THROW(design(table), InputError);
   };
-  refused({{{"index", whole(7)}}, {{"index", whole(7)}}});
-  refused({{{"index", whole(100)}}});
+  refused({{{"index", {7}}}, {{"index", {7}}}});
+  refused({{{"index", {100}}}});
   // The area is missing.
-  refused({{{"index", whole(7)}, {"shunt_ohm", number(10.0)}}});
+  refused({{{"index", {7}}, {"shunt_ohm", {10.0}}}});
 }
 
 TEST(PhotovoltaicArray, GapsAndMarginsLeaveTheirLightAside) {
   auto table = ten_by_ten();
-  table["gap_mm"] = number(2.0);
-  table["margin_mm"] = number(6.0);
+  table["gap_mm"] = {2.0};
+  table["margin_mm"] = {6.0};
   const ArrayResult result =
       evaluate(design(table), array_light(7, 13, 0.2, 0.2, std::vector<double>(91, 500.0)));
   const double side_m = (0.2 - 9 * 0.002 - 2 * 0.006) / 10.0;
@@ -161,7 +146,7 @@ TEST(PhotovoltaicArray, ShadedCellIsTheOneInReverse) {
   std::vector<double> irradiance(100, 1000.0);
   irradiance[37] = 100.0;
   auto table = ten_by_ten();
-  table["bypass"] = text("none");
+  table["bypass"] = {"none"};
   const ArrayResult result = evaluate(design(table), array_light(10, 10, 0.2, 0.2, irradiance));
   for (size_t i = 0; i < 100; ++i) {
     if (i == 37) {
@@ -179,8 +164,8 @@ TEST(PhotovoltaicArray, CellPowersAddUpToThePowerDeliveredAndLostInDiodes) {
   }
   for (const char* kind : {"none", "ideal", "junction"}) {
     auto table = ten_by_ten();
-    table["bypass"] = text(kind);
-    table["bypass_every"] = whole(20);
+    table["bypass"] = {kind};
+    table["bypass_every"] = {20};
     const ArrayResult result = evaluate(design(table), array_light(10, 10, 0.2, 0.2, irradiance));
     double delivered_W = 0.0;
     for (size_t i = 0; i < 100; ++i) {
@@ -200,10 +185,9 @@ TEST(PhotovoltaicArray, DarkCellWithoutBreakdownCostsItsSubstring) {
   std::vector<double> irradiance(100, 1000.0);
   irradiance[37] = 0.0;
   auto table = ten_by_ten();
-  table["bypass_every"] = whole(20);
-  table["cell_parameters"] = node(SettingsNode::Table{{"breakdown_fraction", number(0.0)},
-                                                      {"shunt_ohm", number(1e9)},
-                                                      {"reference_area_m2", number(1e-4)}});
+  table["bypass_every"] = {20};
+  table["cell_parameters"] = {SettingsNode::Table{
+      {"breakdown_fraction", {0.0}}, {"shunt_ohm", {1e9}}, {"reference_area_m2", {1e-4}}}};
   const ArrayDesign array = design(table);
   const ArrayResult result = evaluate(array, array_light(10, 10, 0.2, 0.2, irradiance));
   const CellCurve cell(parameters_at(array.cell, 4e-4, array.temperature_K));
@@ -263,12 +247,11 @@ TEST(PhotovoltaicArray, WrongDesignsNameTheirKey) {
     table[key] = value;
     return refusal_of([&] { design(table); });
   };
-  EXPECT_THAT(message("strings", whole(7)),
-              testing::HasSubstr("array.toml:1: array.strings: found 7"));
-  EXPECT_THAT(message("cell", text("silicon_heterojuntion")), testing::HasSubstr("did you mean"));
-  EXPECT_THAT(message("cells", text("ten")), testing::HasSubstr("array.cells"));
-  EXPECT_THAT(message("temperature_K", number(-4.0)), testing::HasSubstr("array.temperature_K"));
-  EXPECT_THAT(message("wiring", whole(3)), testing::HasSubstr("array.wiring"));
+  EXPECT_THAT(message("strings", {7}), testing::HasSubstr("test.toml:7: array.strings: found 7"));
+  EXPECT_THAT(message("cell", {"silicon_heterojuntion"}), testing::HasSubstr("did you mean"));
+  EXPECT_THAT(message("cells", {"ten"}), testing::HasSubstr("array.cells"));
+  EXPECT_THAT(message("temperature_K", {-4.0}), testing::HasSubstr("array.temperature_K"));
+  EXPECT_THAT(message("wiring", {3}), testing::HasSubstr("array.wiring"));
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "core/errors.h"
 #include "core/numerics/random.h"
 #include "ivcurves.h"
 #include "photovoltaics/fit/conditions.h"

@@ -209,31 +209,22 @@ TEST(PhotovoltaicArray, PhotocurrentAndWaterfallFollowTheEnteringLight) {
   EXPECT_TRUE(found);
 }
 
-using Numbers = std::vector<double>;
-
-Settings cover_settings(const std::vector<std::pair<std::string, SettingsNode>>& keys) {
-  return fixtures::settings_of(keys);
-}
-
 TEST(CellFront, WrongCoversNameTheirKey) {
-  using fixtures::node_of;
-  const auto message = [](const Settings& settings) {
-    return refusal_of([&] { read_cell_front(settings); });
+  using test::numbers_node;
+  const auto message = [](const SettingsNode::Table& keys) {
+    return refusal_of([&] { read_cell_front(test::settings_of(keys, "cover")); });
   };
-  EXPECT_THAT(message(cover_settings({{"refractive_index", node_of(0.5)}})),
-              testing::HasSubstr("refractive_index"));
-  EXPECT_THAT(message(cover_settings({{"coating_index", node_of(1.38)}})),
-              testing::HasSubstr("coating_thickness"));
-  EXPECT_THAT(message(cover_settings({{"angle_deg", node_of(Numbers{10.0, 20.0})},
-                                      {"transmittance", node_of(Numbers{1.0, 0.9})}})),
+  EXPECT_THAT(message({{"refractive_index", {0.5}}}), testing::HasSubstr("refractive_index"));
+  EXPECT_THAT(message({{"coating_index", {1.38}}}), testing::HasSubstr("coating_thickness"));
+  EXPECT_THAT(message({{"angle_deg", numbers_node({10.0, 20.0})},
+                       {"transmittance", numbers_node({1.0, 0.9})}}),
               testing::HasSubstr("ascending angles from 0"));
-  EXPECT_NE(message(cover_settings({{"angle_deg", node_of(Numbers{0.0, 60.0})},
-                                    {"transmittance", node_of(Numbers{1.0, 0.9})},
-                                    {"refractive_index", node_of(1.5)}}))
+  EXPECT_NE(message({{"angle_deg", numbers_node({0.0, 60.0})},
+                     {"transmittance", numbers_node({1.0, 0.9})},
+                     {"refractive_index", {1.5}}})
                 .find("a table by angle too"),
             std::string::npos);
-  EXPECT_THAT(message(cover_settings(
-                  {{"cosine_twice", SettingsNode{true, {}}}, {"refractive_index", node_of(1.5)}})),
+  EXPECT_THAT(message({{"cosine_twice", {true}}, {"refractive_index", {1.5}}}),
               testing::HasSubstr("a front beside cosine_twice"));
 }
 

@@ -6,7 +6,6 @@
 
 #include <string>
 
-#include "core/errors.h"
 #include "tests/refusal.h"
 
 namespace photorque {

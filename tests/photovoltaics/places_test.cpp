@@ -14,17 +14,10 @@
 namespace photorque {
 namespace {
 
+using fixtures::append;
 using fixtures::plate;
-
-// Appends a mesh with separate vertices.
-void join(Mesh& all, const Mesh& more) {
-  const auto first = static_cast<uint32_t>(all.vertices_m.size());
-  all.vertices_m.insert(all.vertices_m.end(), more.vertices_m.begin(), more.vertices_m.end());
-  all.uv.insert(all.uv.end(), more.uv.begin(), more.uv.end());
-  for (const auto& t : more.triangles) {
-    all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
-}
+using test::numbers_node;
+using test::settings_of;
 
 // Two triangles without a common index, as exporters without indices write a rectangle.
 Mesh loose_plate(double x0, double x1, double y0, double y1) {
@@ -47,8 +40,8 @@ constexpr double side_m = 0.09, pitch_m = 0.1;
 Mesh six_squares() {
   Mesh all;
   for (const auto& [column, row] : {std::pair{2, 1}, {0, 0}, {1, 1}, {2, 0}, {0, 1}, {1, 0}}) {
-    join(all, loose_plate(column * pitch_m, column * pitch_m + side_m, row * pitch_m,
-                          row * pitch_m + side_m));
+    append(all, loose_plate(column * pitch_m, column * pitch_m + side_m, row * pitch_m,
+                            row * pitch_m + side_m));
   }
   return all;
 }
@@ -137,18 +130,18 @@ TEST(CellPlaces, InstancesAreCellsAlsoWhenTheyTouch) {
   EXPECT_EQ(places_from_mesh(scene, grid).parts.size(), 3u);
   // Squares of one mesh that share an edge are one cell.
   Mesh touching;
-  join(touching, loose_plate(0, 0.1, 0, 0.1));
-  join(touching, loose_plate(0.1, 0.2, 0, 0.1));
+  append(touching, loose_plate(0, 0.1, 0, 0.1));
+  append(touching, loose_plate(0.1, 0.2, 0, 0.1));
   const Scene joined = fixtures::scene_of(touching);
   EXPECT_EQ(places_from_mesh(joined, grid_over(joined)).parts.size(), 1u);
 }
 
 TEST(CellPlaces, CellsOutOfLineStandInOneRow) {
   Mesh all;
-  join(all, plate(0, 1, 0, 1));
-  join(all, plate(2, 3, 0.5, 1.5));
-  join(all, plate(0, 1, 2, 3));
-  join(all, plate(2, 3, 2, 3));
+  append(all, plate(0, 1, 0, 1));
+  append(all, plate(2, 3, 0.5, 1.5));
+  append(all, plate(0, 1, 2, 3));
+  append(all, plate(2, 3, 2, 3));
   const Scene scene = fixtures::scene_of(all);
   const CellPlaces places = places_from_mesh(scene, grid_over(scene));
   EXPECT_EQ(places.columns, 4);
@@ -157,25 +150,16 @@ TEST(CellPlaces, CellsOutOfLineStandInOneRow) {
 }
 
 SettingsNode rectangle(const std::vector<double>& low, const std::vector<double>& high) {
-  SettingsNode node;
-  node.where = {"test.toml", 9};
-  node.value =
-      SettingsNode::Table{{"low_mm", fixtures::node_of(low)}, {"high_mm", fixtures::node_of(high)}};
-  return node;
+  return {SettingsNode::Table{{"low_mm", numbers_node(low)}, {"high_mm", numbers_node(high)}}};
 }
 
 TEST(CellPlaces, WrongPlacesNameTheirKey) {
   const Scene scene = fixtures::scene_of(plate(0, 0.29, 0, 0.19));
   const SurfaceGrid grid = grid_over(scene);
-  const auto message = [&](const std::vector<std::pair<std::string, SettingsNode>>& keys) {
-    return refusal_of([&] { read_cell_places(fixtures::settings_of(keys), scene, grid); });
+  const auto message = [&](const SettingsNode::Table& keys) {
+    return refusal_of([&] { read_cell_places(settings_of(keys), scene, grid); });
   };
-  const auto rectangles = [](std::vector<SettingsNode> all) {
-    SettingsNode node;
-    node.where = {"test.toml", 8};
-    node.value = SettingsNode::Array(all.begin(), all.end());
-    return node;
-  };
+  const auto rectangles = [](SettingsNode::Array all) { return SettingsNode{std::move(all)}; };
   const SettingsNode good = rectangle({0, 0}, {100, 100});
   EXPECT_EQ(message({{"rectangle", rectangles({good, rectangle({100, 0}, {200, 100})})}}), "");
   EXPECT_THAT(message({{"rectangle", rectangles({good, rectangle({50, 0}, {150, 100})})}}),
@@ -184,12 +168,9 @@ TEST(CellPlaces, WrongPlacesNameTheirKey) {
               testing::HasSubstr("a rectangle within u = 0.000000 to 0.290000"));
   EXPECT_THAT(message({{"rectangle", rectangles({rectangle({0, 0, 1}, {300, 100})})}}),
               testing::HasSubstr("[u, v]"));
-  EXPECT_THAT(message({{"cells", fixtures::node_of("meshh")}}), testing::HasSubstr("did you mean"));
-  EXPECT_THAT(message({{"cells", fixtures::node_of("mesh")}, {"gap_m", fixtures::node_of(0.1)}}),
-              testing::HasSubstr("gap_m"));
-  EXPECT_FALSE(read_cell_places(fixtures::settings_of(
-                                    {{"cells", fixtures::node_of(std::vector<double>{3.0, 2.0})}}),
-                                scene, grid)
+  EXPECT_THAT(message({{"cells", {"meshh"}}}), testing::HasSubstr("did you mean"));
+  EXPECT_THAT(message({{"cells", {"mesh"}}, {"gap_m", {0.1}}}), testing::HasSubstr("gap_m"));
+  EXPECT_FALSE(read_cell_places(settings_of({{"cells", numbers_node({3.0, 2.0})}}), scene, grid)
                    .has_value());
 }
 

@@ -17,6 +17,7 @@
 #include "photovoltaics/network/curve.h"
 #include "tests/files.h"
 #include "tests/outside.h"
+#include "tests/settings.h"
 
 namespace photorque::reference {
 
@@ -112,16 +113,9 @@ inline ArrayDesign array_in_series(int columns, int rows, int bypass_every, size
   return design;
 }
 
-// Values of the table [array], and the design that it states.
-inline SettingsNode node(decltype(SettingsNode::value) value) {
-  return {std::move(value), {"array.toml", 1}};
-}
-inline SettingsNode list(std::vector<SettingsNode> members) {
-  return node(SettingsNode::Array(std::move(members)));
-}
+// The design that the table [array] states.
 inline ArrayDesign design(SettingsNode::Table table) {
-  return read_array_design(
-      Settings(std::make_shared<const SettingsNode>(node(std::move(table))), "array"));
+  return read_array_design(test::settings_of(std::move(table), "array"));
 }
 
 inline std::shared_ptr<const DiodeVoltageTable> table(const CellParameters& p) {

@@ -1,28 +1,27 @@
 // Wirings as an experiment states them: against ngspice, and against each other.
-#include <algorithm>
 #include <map>
-#include <memory>
 
-#include "core/errors.h"
 #include "reference.h"
 #include "tests/refusal.h"
 
 namespace photorque {
 namespace {
 
-using reference::list, reference::node;
+SettingsNode list(SettingsNode::Array members) {
+  return {std::move(members)};
+}
 
 SettingsNode words(const std::vector<std::string>& texts) {
   SettingsNode::Array array;
-  for (const std::string& text : texts) array.push_back(node(text));
-  return node(std::move(array));
+  for (const std::string& text : texts) array.push_back({text});
+  return list(std::move(array));
 }
 
-ArrayDesign design(int64_t columns, int64_t rows, const std::string& key, const SettingsNode& value,
+ArrayDesign design(double columns, double rows, const std::string& key, const SettingsNode& value,
                    const std::string& bypass, double temperature_K = 298.15) {
-  SettingsNode::Table table = {{"cells", list({node(columns), node(rows)})},
-                               {"bypass", node(bypass)},
-                               {"temperature_K", node(temperature_K)}};
+  SettingsNode::Table table = {{"cells", test::numbers_node({columns, rows})},
+                               {"bypass", {bypass}},
+                               {"temperature_K", {temperature_K}}};
   table[key] = value;
   return reference::design(std::move(table));
 }
@@ -62,8 +61,7 @@ TEST(PhotovoltaicWirings, EightWiringsUnderThreeMapsAgreeWithNgspice) {
 // Both groups of the module are alike, so that it gives twice what one of them gives; and one of
 // them is two strings in parallel under one diode.
 TEST(PhotovoltaicWirings, TwinModuleIsTwiceItsGroup) {
-  const auto whole = [](int64_t i) { return node(i); };
-  const auto chain = [&](int64_t i) { return list({whole(i), whole(i + 1)}); };
+  const auto chain = [](int64_t i) { return list({{i}, {i + 1}}); };
   const SettingsNode group_0 = list({list({chain(0), chain(2)})});
   const SettingsNode group_1 = list({list({chain(4), chain(6)})});
   const ArrayDesign listed = design(8, 1, "wiring", list({list({group_0, group_1})}), "ideal");
@@ -87,14 +85,14 @@ TEST(PhotovoltaicWirings, LevelsAreTheRegularKeysInOtherWords) {
   const auto maxima = [&](const ArrayDesign& array) {
     return reference::curve(array.wiring, suns, reference::cell()).maxima();
   };
-  const auto strings = maxima(design(3, 4, "strings", node(int64_t{3}), "ideal"));
+  const auto strings = maxima(design(3, 4, "strings", {3}, "ideal"));
   const auto levels =
       maxima(design(3, 4, "circuit", words({"parallel 3 bypass", "series 4"}), "ideal"));
   ASSERT_EQ(strings.size(), levels.size());
   for (size_t i = 0; i < strings.size(); ++i) {
     EXPECT_NEAR(strings[i].power_W(), levels[i].power_W(), 1e-10);
   }
-  const auto every = maxima(design(3, 4, "bypass_every", node(int64_t{1}), "ideal"));
+  const auto every = maxima(design(3, 4, "bypass_every", {1}, "ideal"));
   const auto each = maxima(design(3, 4, "circuit", words({"series 12 bypass"}), "ideal"));
   ASSERT_EQ(every.size(), each.size());
   for (size_t i = 0; i < every.size(); ++i) {
@@ -111,10 +109,9 @@ TEST(PhotovoltaicWirings, MistakesStateTheExpectedValue) {
   EXPECT_THAT(message("circuit", words({"series x"})), testing::HasSubstr("\"series N\""));
   EXPECT_THAT(message("circuit", words({"in series 12"})), testing::HasSubstr("\"series N\""));
   EXPECT_THAT(message("circuit", words({"series 12 bypassed"})), testing::HasSubstr("\"bypass\""));
-  const SettingsNode twice =
-      list({list({list({list({node(int64_t{1}), list({node(int64_t{1})})})})})});
+  const SettingsNode twice = list({list({list({list({{1}, list({{1}})})})})});
   EXPECT_THAT(message("wiring", twice), testing::HasSubstr("at most once"));
-  SettingsNode deep = node(int64_t{0});
+  SettingsNode deep = {0};
   for (int i = 0; i < 60; ++i) deep = list({deep});
   EXPECT_THAT(message("wiring", deep), testing::HasSubstr("32 levels"));
 }

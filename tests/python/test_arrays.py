@@ -55,7 +55,3 @@ class Arrays(unittest.TestCase):
         np.testing.assert_array_equal(drawn.value, array.irradiance_W_m2)
         self.assertEqual(drawn.extent, array.extent)
         self.assertEqual(drawn.unit, "W/m²")
-
-
-if __name__ == "__main__":
-    unittest.main()

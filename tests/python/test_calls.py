@@ -64,7 +64,3 @@ class Calls(unittest.TestCase):
         one = photorque.trace(self.experiment, threads=1).flux_maps["solar_array"]
         three = photorque.trace(self.experiment, threads=3).flux_maps["solar_array"]
         self.assertEqual(one.irradiance_W_m2.tobytes(), three.irradiance_W_m2.tobytes())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -19,7 +19,3 @@ class Documents(FolderTest):
         names = {}
         for example in examples:
             exec(compile(example.replace('"out/', f'"{self.folder}/'), "docs/python.md", "exec"), names)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -90,7 +90,3 @@ class Errors(FolderTest):
         table = photorque.torque_map(photorque.Experiment(nominal, keys=keys))
         with self.assertRaises(photorque.NumericalError):
             table.at(polar_rad=1.0, around_rad=0.0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -102,7 +102,3 @@ class Sweeps(unittest.TestCase):
         self.assertEqual((len(reports), reports[-1]), (6, 1.0))
         with self.assertRaises(photorque.InputError):
             photorque.sweep(experiment, {"source[0].colour": [1]}, photorque.trace)
-
-
-if __name__ == "__main__":
-    unittest.main()

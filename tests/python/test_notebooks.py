@@ -56,7 +56,3 @@ class Notebooks(unittest.TestCase):
         self.assertEqual([effect.kind for effect in answer.effects], ["magnetic_dipole"])
         dipole = answer.effects[0].parameters["dipole_A_m2"]
         self.assertTrue((np.abs(dipole["value"] - [0.01, -0.005, 0.008]) < 4 * dipole["standard_error"]).all())
-
-
-if __name__ == "__main__":
-    unittest.main()

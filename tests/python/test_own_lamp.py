@@ -125,7 +125,3 @@ class OwnLamp(FolderTest):
             photorque.trace(self.experiment(), lamps=[cone])
         with self.assertRaises(photorque.InputError):
             photorque.trace(self.experiment())  # no lamp at all
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -61,7 +61,3 @@ class OwnTorque(unittest.TestCase):
         for wrong in (lambda t, q, w: np.zeros(3), lambda t, q, w: np.full((len(t), 3), np.nan)):
             with self.assertRaisesRegex(ValueError, "torque \"wrong\""):
                 photorque.propagate(platform(), torques={"wrong": wrong})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -73,7 +73,3 @@ class Plots(unittest.TestCase):
             bar("tracing", 0.5)
             bar("tracing", 1.0)
         self.assertEqual(text.getvalue(), "\r[##..]  50 % tracing\r[####] 100 % tracing\n")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -80,7 +80,3 @@ class Packets(unittest.TestCase):
             damaged[at] ^= 0x10
             self.assertIsNone(realtime.unseal(bytes(damaged)), at)
         self.assertIsNone(realtime.unseal(struct.pack("<256x")))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -114,7 +114,3 @@ maximum_V = 17.63
         fit = photorque.fit_cell(photorque.Experiment(file))
         self.assert_same_files(fit, files, 2)
         self.assertGreater(fit.figures["series_ohm"].value, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

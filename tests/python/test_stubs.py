@@ -61,7 +61,3 @@ class Stubs(unittest.TestCase):
         checked = subprocess.run([sys.executable, "-m", "mypy", "--strict", str(folder)],
                                  capture_output=True, text=True, cwd=folder.parent)
         self.assertEqual(checked.returncode, 0, checked.stdout)
-
-
-if __name__ == "__main__":
-    unittest.main()

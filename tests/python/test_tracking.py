@@ -50,7 +50,3 @@ class Tracking(FolderTest):
         # The camera reads to 37 arcsec out of the image plane; known torques leave less.
         self.assertLess(found.figures["smoother_error_arcsec"].value, 37)
         self.assertEqual(len(found.smoothed()["t_s"]), 101)
-
-
-if __name__ == "__main__":
-    unittest.main()

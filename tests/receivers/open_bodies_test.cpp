@@ -13,17 +13,10 @@ namespace photorque {
 namespace {
 
 using fixtures::add;
+using fixtures::append;
 using fixtures::pressure_Pa;
 using fixtures::rectangle;
 using fixtures::sun;
-
-void append(Mesh& to, const Mesh& from) {
-  const auto first = static_cast<uint32_t>(to.vertices_m.size());
-  to.vertices_m.insert(to.vertices_m.end(), from.vertices_m.begin(), from.vertices_m.end());
-  for (const auto& t : from.triangles) {
-    to.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
-}
 
 Mesh turned_inside_out(Mesh mesh) {
   for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);

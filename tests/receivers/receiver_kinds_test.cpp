@@ -6,6 +6,7 @@
 #include "receiver_scenes.h"
 #include "receivers/kind.h"
 #include "tests/refusal.h"
+#include "tests/settings.h"
 
 namespace photorque {
 namespace {
@@ -13,10 +14,9 @@ namespace {
 using fixtures::add_instance;
 using fixtures::HitMaker;
 using fixtures::hits_of;
-using fixtures::node_of;
 using fixtures::plate;
-using fixtures::settings_of;
 using fixtures::sums_of;
+using test::numbers_node;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -45,8 +45,12 @@ std::vector<HitMaker> random_hits(uint64_t seed, int count) {
   return hits;
 }
 
+Settings settings_of(SettingsNode::Table table) {
+  return test::settings_of(std::move(table), "receiver[0]");
+}
+
 Settings on_array() {
-  return settings_of({{"node", node_of("solar_array")}});
+  return settings_of({{"node", {"solar_array"}}});
 }
 
 class EveryReceiver : public ::testing::TestWithParam<ReceiverKind> {};
@@ -126,7 +130,7 @@ TEST_P(EveryReceiver, IsDarkWithoutLight) {
 
 TEST_P(EveryReceiver, NamesTheNearestNode) {
   const std::string message = refusal_of([&] {
-    GetParam().make(settings_of({{"node", node_of("solar_aray")}}), two_plates());
+    GetParam().make(settings_of({{"node", {"solar_aray"}}}), two_plates());
   });
   EXPECT_THAT(message, AllOf(HasSubstr("test.toml:7: receiver[0].node"), HasSubstr("solar_aray"),
                              HasSubstr("perhaps \"solar_array\""), HasSubstr("bottom"),
@@ -134,9 +138,8 @@ TEST_P(EveryReceiver, NamesTheNearestNode) {
 }
 
 TEST_P(EveryReceiver, ReadsEveryDeclaredKeyAndNoOther) {
-  const Settings settings = settings_of({{"node", node_of("solar_array")},
-                                         {"name", node_of("wing 1/left")},
-                                         {"colour", node_of("red")}});
+  const Settings settings =
+      settings_of({{"node", {"solar_array"}}, {"name", {"wing 1/left"}}, {"colour", {"red"}}});
   const auto receiver = GetParam().make(settings, two_plates()).receiver;
   EXPECT_THAT(refusal_of([&] { settings.finish(); }), HasSubstr("colour"));
   const Product product = receiver->product(sums_of(*receiver, {{}, {}}));
@@ -151,20 +154,20 @@ TEST(ReceiverSettings, GridKeysAreChecked) {
   ASSERT_EQ(kind.name, "flux_map");
   const auto message = [&](const std::string& key, const SettingsNode& value) {
     return refusal_of([&] {
-      kind.make(settings_of({{"node", node_of("bottom")}, {key, value}}), two_plates());
+      kind.make(settings_of({{"node", {"bottom"}}, {key, value}}), two_plates());
     });
   };
-  EXPECT_THAT(message("bins", node_of(std::vector<double>{0, 100})), HasSubstr("1 to 4096"));
-  EXPECT_THAT(message("bins", node_of(std::vector<double>{10, 10.5})), HasSubstr("10.5"));
-  EXPECT_THAT(message("bins", node_of(std::vector<double>{10, 5000})), HasSubstr("5000"));
-  EXPECT_THAT(message("bins", node_of(std::vector<double>{10})), HasSubstr("two whole numbers"));
-  EXPECT_THAT(message("over", node_of("sphere")), HasSubstr("\"uv\""));
-  EXPECT_THAT(message("side", node_of("bak")), HasSubstr("did you mean \"back\""));
-  EXPECT_THAT(message("facing", node_of(std::vector<double>{0, 0, 0})), HasSubstr("direction"));
-  EXPECT_THAT(message("facing", node_of(std::vector<double>{0, 0, -1})),
-              HasSubstr("test.toml:6: receiver[0]: found no surface that faces that way"));
-  EXPECT_THAT(message("name", node_of("")), HasSubstr("empty"));
-  EXPECT_EQ(message("bins", node_of(std::vector<double>{4096, 1})), "");
+  EXPECT_THAT(message("bins", numbers_node({0, 100})), HasSubstr("1 to 4096"));
+  EXPECT_THAT(message("bins", numbers_node({10, 10.5})), HasSubstr("10.5"));
+  EXPECT_THAT(message("bins", numbers_node({10, 5000})), HasSubstr("5000"));
+  EXPECT_THAT(message("bins", numbers_node({10})), HasSubstr("two whole numbers"));
+  EXPECT_THAT(message("over", {"sphere"}), HasSubstr("\"uv\""));
+  EXPECT_THAT(message("side", {"bak"}), HasSubstr("did you mean \"back\""));
+  EXPECT_THAT(message("facing", numbers_node({0, 0, 0})), HasSubstr("direction"));
+  EXPECT_THAT(message("facing", numbers_node({0, 0, -1})),
+              HasSubstr("test.toml:7: receiver[0]: found no surface that faces that way"));
+  EXPECT_THAT(message("name", {""}), HasSubstr("empty"));
+  EXPECT_EQ(message("bins", numbers_node({4096, 1})), "");
 }
 
 }  // namespace

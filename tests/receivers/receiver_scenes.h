@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/constants.h"
-#include "core/settings/settings.h"
 #include "raytrace/receiver.h"
 #include "raytrace/scene.h"
 
@@ -22,6 +21,16 @@ inline Mesh plate(double x0, double x1, double y0, double y1, double z = 0.0) {
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   mesh.uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   return mesh;
+}
+
+// Adds a mesh with separate vertices.
+inline void append(Mesh& all, const Mesh& more) {
+  const auto first = static_cast<uint32_t>(all.vertices_m.size());
+  all.vertices_m.insert(all.vertices_m.end(), more.vertices_m.begin(), more.vertices_m.end());
+  all.uv.insert(all.uv.end(), more.uv.begin(), more.uv.end());
+  for (const auto& t : more.triangles) {
+    all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
 }
 
 // The polygon with corners on the circle of radius 1, first corner on +x, front up.
@@ -156,28 +165,6 @@ inline BinSums sums_of(const Receiver& receiver, const std::vector<std::vector<H
     }
   }
   return sums;
-}
-
-inline SettingsNode node_of(double x) {
-  return {x, {"test.toml", 7}};
-}
-inline SettingsNode node_of(const std::string& text) {
-  return {text, {"test.toml", 7}};
-}
-inline SettingsNode node_of(const char* text) {
-  return node_of(std::string(text));
-}
-inline SettingsNode node_of(const std::vector<double>& numbers) {
-  SettingsNode::Array array;
-  for (const double x : numbers) array.push_back(node_of(x));
-  return {std::move(array), {"test.toml", 7}};
-}
-
-inline Settings settings_of(const std::vector<std::pair<std::string, SettingsNode>>& keys) {
-  SettingsNode root;
-  root.where = {"test.toml", 6};
-  for (const auto& [key, node] : keys) std::get<SettingsNode::Table>(root.value)[key] = node;
-  return Settings(std::make_shared<const SettingsNode>(root), "receiver[0]");
 }
 
 inline const Map& map_named(const Product& product, const std::string& name) {

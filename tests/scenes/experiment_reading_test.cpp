@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "core/constants.h"
 #include "scenes/experiment/experiment.h"
@@ -11,7 +10,6 @@
 namespace photorque {
 namespace {
 
-using testing::AnyOf;
 using testing::Contains;
 using testing::Pair;
 

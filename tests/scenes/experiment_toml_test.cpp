@@ -11,7 +11,7 @@ namespace {
 Settings settings_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
   SettingsNode root = parse_toml(text, "test.toml");
   for (const std::string& assignment : overrides) apply_override(root, assignment);
-  return Settings(std::make_shared<const SettingsNode>(std::move(root)));
+  return Settings(std::move(root));
 }
 
 std::string error_of(const std::string& text, const std::string& assignment) {

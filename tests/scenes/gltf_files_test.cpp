@@ -1,8 +1,5 @@
 // One model in every container, and with files beside it.
 
-#include <filesystem>
-#include <fstream>
-
 #include "gltf_test_model.h"
 #include "tests/files.h"
 

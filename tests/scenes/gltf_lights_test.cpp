@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/constants.h"
-#include "core/errors.h"
 #include "core/numerics/random.h"
 #include "receivers/flux_map.h"
 #include "scenes/experiment/experiment.h"

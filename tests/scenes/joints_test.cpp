@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/errors.h"
 #include "scenes/experiment/experiment.h"
 #include "tests/refusal.h"
 

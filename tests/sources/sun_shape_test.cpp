@@ -11,7 +11,6 @@
 namespace photorque {
 namespace {
 
-using test::changed;
 using test::make_beams;
 using test::numbers_node;
 using test::vector_node;

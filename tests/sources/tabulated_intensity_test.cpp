@@ -7,7 +7,6 @@
 #include "raytrace/direct/disc_light.h"
 #include "sampling.h"
 #include "sources/lamps/ies.h"
-#include "sources/profiles/beam_shape.h"
 
 namespace photorque {
 namespace {

@@ -2,7 +2,6 @@
 // which such a file can be wrong.
 #include <gmock/gmock.h>
 
-#include "core/errors.h"
 #include "sources/photometry/file.h"
 #include "tests/refusal.h"
 #include "tests/sources/ies_writer.h"

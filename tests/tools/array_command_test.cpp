@@ -1,8 +1,6 @@
 // `fit-cell`, and the further results of `power`, as a user meets them.
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <string>
 
 #include "attitude/recordings/text_lines.h"

@@ -1,6 +1,5 @@
 // The commands budget, propagate and balance as a user meets them.
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>

@@ -1,5 +1,4 @@
 // The program as a user meets it: exit statuses, messages, files.
-#include <filesystem>
 #include <sstream>
 
 #include "tests/tools/command_test.h"
@@ -8,7 +7,6 @@ namespace photorque {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 class CommandLine : public CommandTest {};
 

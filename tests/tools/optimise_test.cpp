@@ -31,14 +31,9 @@ class Optimise : public SweepTest {
   }
 };
 
-constexpr const char* tilt_and_heading = R"([[sweep.axis]]
-key = "attitude.tilt_deg"
-from = 0
-to = 80
-[[sweep.axis]]
-key = "attitude.heading_deg"
-from = -180
-to = 180
+constexpr const char* tilt_and_heading =
+    R"(axis = [{ key = "attitude.tilt_deg", from = 0, to = 80 },
+        { key = "attitude.heading_deg", from = -180, to = 180 }]
 )";
 
 // The Sun stands 25 deg from the zenith towards 40 deg from x: that is where the plate should lean.
@@ -79,13 +74,8 @@ maximise = "power_on_plate_W"
 global = 20
 local = 40
 precision = 1e-5
-[[sweep.axis]]
-key = "attitude.tilt_deg"
-from = 0
-to = 80
-[[sweep.constraint]]
-figure = "power_on_plate_W"
-at_most = 120
+axis = [{ key = "attitude.tilt_deg", from = 0, to = 80 }]
+constraint = [{ figure = "power_on_plate_W", at_most = 120 }]
 )");
   const Outcome got = optimise();
   ASSERT_EQ(got.status, 0) << got.err;
@@ -101,9 +91,7 @@ verb = "trace"
 maximise = "power_on_plate_W"
 global = 6
 local = 6
-[[sweep.constraint]]
-figure = "power_on_plate_W"
-at_least = 1e6
+constraint = [{ figure = "power_on_plate_W", at_least = 1e6 }]
 )") + tilt_and_heading);
   EXPECT_THAT(optimise().out, HasSubstr("At most 12 designs"));
   EXPECT_LE(std::stoi(query(at("out/designs.sqlite"), "SELECT count(*) FROM run")[0][0]), 13);
@@ -145,13 +133,8 @@ constexpr const char* spread_sun = R"([sweep]
 verb = "trace"
 maximise = "power_on_plate_W"
 built_copies = 400
-[[sweep.axis]]
-key = "attitude.tilt_deg"
-values = [0, 60]
-[[sweep.tolerance]]
-key = "source[0].irradiance_W_m2"
-sigma = 0.03
-relative = true
+axis = [{ key = "attitude.tilt_deg", values = [0, 60] }]
+tolerance = [{ key = "source[0].irradiance_W_m2", sigma = 0.03, relative = true }]
 )";
 
 TEST_F(Optimise, CopiesAsBuiltFollowTheirTolerance) {
@@ -184,13 +167,8 @@ maximise = "power_on_plate_W"
 built_copies = 20
 built_of = "every"
 built_fraction = 0.9
-[[sweep.axis]]
-key = "attitude.tilt_deg"
-values = [30, 40]
-[[sweep.tolerance]]
-key = "attitude.tilt_deg"
-half_width = 0.3
-relative = true
+axis = [{ key = "attitude.tilt_deg", values = [30, 40] }]
+tolerance = [{ key = "attitude.tilt_deg", half_width = 0.3, relative = true }]
 )");
   const Outcome got = sweep();
   ASSERT_EQ(got.status, 0) << got.err;

@@ -1,6 +1,5 @@
 // The command sweep as a user meets it.
 #include <cmath>
-#include <filesystem>
 
 #include "tests/tools/sweep_test.h"
 
@@ -35,15 +34,8 @@ class Sweep : public CommandTest {
 constexpr const char* grid = R"([sweep]
 verb = "trace"
 figures = ["emitted_W", "power_on_solar_array_W"]
-[[sweep.axis]]
-key = "source[0].fwhm_deg"
-values = [1, 30]
-[[sweep.axis]]
-key = "source[0].power_W"
-from = 1
-to = 100
-count = 3
-spacing = "logarithmic"
+axis = [{ key = "source[0].fwhm_deg", values = [1, 30] },
+        { key = "source[0].power_W", from = 1, to = 100, count = 3, spacing = "logarithmic" }]
 )";
 
 TEST_F(Sweep, TakesEveryCombinationOfAGrid) {
@@ -82,14 +74,8 @@ TEST_F(Sweep, DrawsFromDistributions) {
 verb = "trace"
 designs = 64
 figures = ["emitted_W"]
-[[sweep.axis]]
-key = "source[0].power_W"
-mean = 10
-sigma = 0.5
-[[sweep.axis]]
-key = "source[0].fwhm_deg"
-from = 2
-to = 4
+axis = [{ key = "source[0].power_W", mean = 10, sigma = 0.5 },
+        { key = "source[0].fwhm_deg", from = 2, to = 4 }]
 )";
   ASSERT_EQ(sweep(plan, "--set trace.direct='\"rays\"'"), 0) << complained();
   const auto table = csv_rows(folder_ / "out/sweep.csv");

@@ -18,11 +18,7 @@ constexpr const char* forty = R"([sweep]
 verb = "trace"
 figures = ["power_on_plate_W", "emitted_W"]
 maximise = "power_on_plate_W"
-[[sweep.axis]]
-key = "attitude.tilt_deg"
-from = 0
-to = 39
-count = 40
+axis = [{ key = "attitude.tilt_deg", from = 0, to = 39, count = 40 }]
 )";
 
 class SweepDatabase : public SweepTest {

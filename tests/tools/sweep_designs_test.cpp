@@ -32,14 +32,8 @@ TEST_F(SweepDesigns, AverageOverAnIntervalIsItsIntegral) {
   experiment(R"([sweep]
 verb = "trace"
 figures = ["power_on_plate_W"]
-[[sweep.axis]]
-key = "source[0].irradiance_W_m2"
-values = [1000, 500]
-[[sweep.mean_over]]
-key = "attitude.tilt_deg"
-from = 0
-to = 60
-count = 4
+axis = [{ key = "source[0].irradiance_W_m2", values = [1000, 500] }]
+mean_over = [{ key = "attitude.tilt_deg", from = 0, to = 60, count = 4 }]
 )");
   const Outcome got = sweep();
   ASSERT_EQ(got.status, 0) << got.err;
@@ -58,16 +52,8 @@ TEST_F(SweepDesigns, SpreadIsThatOfTheUncertainInputs) {
 verb = "trace"
 designs = 256
 figures = ["power_on_plate_W"]
-[[sweep.axis]]
-key = "source[0].irradiance_W_m2"
-name = "irradiance"
-mean = 1000
-sigma = 30
-[[sweep.axis]]
-key = "scene.metres_per_unit"
-name = "scale"
-mean = 1
-sigma = 0.01
+axis = [{ key = "source[0].irradiance_W_m2", name = "irradiance", mean = 1000, sigma = 30 },
+        { key = "scene.metres_per_unit", name = "scale", mean = 1, sigma = 0.01 }]
 )");
   const Outcome got = sweep();
   ASSERT_EQ(got.status, 0) << got.err;
@@ -88,13 +74,8 @@ TEST_F(SweepDesigns, WeightsOfAMeanAreThoseGiven) {
   experiment(R"([sweep]
 verb = "trace"
 figures = ["power_on_plate_W"]
-[[sweep.axis]]
-key = "source[0].irradiance_W_m2"
-values = [1000]
-[[sweep.mean_over]]
-key = "attitude.tilt_deg"
-values = [0, 60]
-weights = [3, 1]
+axis = [{ key = "source[0].irradiance_W_m2", values = [1000] }]
+mean_over = [{ key = "attitude.tilt_deg", values = [0, 60], weights = [3, 1] }]
 )");
   ASSERT_EQ(sweep().status, 0);
   const double exact_W = 0.75 * power_W(0) + 0.25 * power_W(60);
@@ -118,9 +99,7 @@ TEST_F(SweepDesigns, TheWorstIsTheOneThatHurts) {
 constexpr const char* two_objectives = R"([sweep]
 verb = "trace"
 maximise = ["power_on_plate_W", "|torque_y_body_body_N_m|"]
-[[sweep.axis]]
-key = "attitude.tilt_deg"
-values = [0, 20, 40, 60]
+axis = [{ key = "attitude.tilt_deg", values = [0, 20, 40, 60] }]
 )";
 
 TEST_F(SweepDesigns, NoneBeatsThoseOfTheParetoFront) {
@@ -176,17 +155,8 @@ TEST_F(SweepDesigns, ArePicturedWithNamesAndUnitsOfTheirAxes) {
 verb = "trace"
 maximise = "power_on_plate_W"
 minimise = "|torque_y_body_body_N_m|"
-[[sweep.axis]]
-key = "attitude.tilt_deg"
-name = "lean"
-from = 0
-to = 40
-count = 3
-[[sweep.axis]]
-key = "source[0].irradiance_W_m2"
-from = 500
-to = 1000
-count = 3
+axis = [{ key = "attitude.tilt_deg", name = "lean", from = 0, to = 40, count = 3 },
+        { key = "source[0].irradiance_W_m2", from = 500, to = 1000, count = 3 }]
 )");
   ASSERT_EQ(sweep("--format svg,csv").status, 0);
   const auto has_picture = [this](const std::string& name) {
@@ -209,14 +179,8 @@ count = 3
 verb = "trace"
 maximise = "power_on_plate_W"
 designs = 8
-[[sweep.axis]]
-key = "attitude.tilt_deg"
-from = 0
-to = 40
-[[sweep.axis]]
-key = "source[0].irradiance_W_m2"
-from = 500
-to = 1000
+axis = [{ key = "attitude.tilt_deg", from = 0, to = 40 },
+        { key = "source[0].irradiance_W_m2", from = 500, to = 1000 }]
 )");
   ASSERT_EQ(sweep().status, 0);
   EXPECT_TRUE(has_picture("sweep_power_on_plate_W_over_1"));

@@ -1,5 +1,4 @@
 // The commands camera and estimate as a user meets them.
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/command_test.h"

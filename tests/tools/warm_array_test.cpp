@@ -1,6 +1,4 @@
 // The temperature of the cells in `power` and `sweep`, as a user meets it.
-#include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>

@@ -51,7 +51,3 @@ class Together(unittest.TestCase):
 
     def test_a_cell_is_no_tilt(self):
         self.expect(self.diagnosed("cell"), "missing_physics", ["cell_degraded"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -321,7 +321,3 @@ class CasesOfLight(unittest.TestCase):
         self.assertEqual(names, [["led_aim"]])
         self.assertEqual(indices, {"led_aim": [1]})
         self.assertLess(alone, 1.0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -111,7 +111,3 @@ class AgainstTheProgram(unittest.TestCase):
         case = made_case(7, ["angular_response"])
         case.effects = [effects.Effect("angular_response", None, {"refractive_index": 1.6})]
         self.expect_agreement(case, "oracle.toml")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -144,7 +144,3 @@ class Catalogue(unittest.TestCase):
             if kind in KINDS:
                 value = np.ravel(KINDS[kind].draw(Draw(1), conditions)[key])
                 self.assertTrue(np.all((value >= low) & (value <= high)), kind)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -156,7 +156,3 @@ class AgainstTheProgram(unittest.TestCase):
             self.assertEqual(run.returncode, 2, words)
             self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
             self.assertIn("found", run.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

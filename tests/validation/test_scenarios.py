@@ -153,7 +153,3 @@ class Cases(unittest.TestCase):
         self.assertEqual((case.name, case.verdict, case.accept), ("slack_cable_01", "unexplained", [[]]))
         self.assertIsNone(files.truth_text(case, 0))
         self.assertEqual(Motion([case.world]).start_s, -0.5)
-
-
-if __name__ == "__main__":
-    unittest.main()

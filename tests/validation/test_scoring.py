@@ -235,7 +235,3 @@ class Plans(unittest.TestCase):
         for text in ("", "[prove]\nnothing = 1\n", "[prove]\n[other]\n", "[prove\n"):
             with self.assertRaises(InputError):
                 self.read(text)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -12,7 +12,6 @@
 #include <cstdlib>
 
 #include "receivers/gather/gather.h"
-#include "sources/lamps/kind.h"
 #include "tools/benchmarks/benchmark_scene.h"
 
 namespace photorque {
@@ -34,29 +33,14 @@ double cpu_s_of(const Work& work) {
   return cpu_s() - before;
 }
 
-SettingsNode node_of(const Vec3& v) {
-  return {SettingsNode::Array{{v.x(), {}}, {v.y(), {}}, {v.z(), {}}}, {}};
-}
-
 // `count` LEDs of 3 deg on a square grid over the field, looking down.
 std::vector<Beam> lamps(int count) {
   const int across = static_cast<int>(std::ceil(std::sqrt(count)));
   std::vector<Beam> beams;
-  const std::vector<SourceKind> kinds = all_source_kinds();
-  const auto led = std::find_if(kinds.begin(), kinds.end(),
-                                [](const SourceKind& kind) { return kind.name == "led"; });
   for (int k = 0; k < count; ++k) {
     const Vec3 at(field_m * ((k % across + 0.5) / across - 0.5),
                   field_m * ((k / across + 0.5) / across - 0.5), 1.5);
-    const SettingsNode::Table table = {{"power_W", {1.0, {}}},
-                                       {"aperture_diameter_m", {0.045 / across, {}}},
-                                       {"profile", {std::string("gaussian"), {}}},
-                                       {"fwhm_deg", {3.0, {}}},
-                                       {"wavelength_nm", {730.0, {}}},
-                                       {"position_m", node_of(at)},
-                                       {"aim_m", node_of(Vec3(0.5 * at.x(), 0.5 * at.y(), 0))}};
-    const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{table, {}}));
-    for (Beam& beam : led->make(settings, {})) beams.push_back(std::move(beam));
+    add_led(beams, at, 0.045 / across);
   }
   return beams;
 }
@@ -65,24 +49,8 @@ std::vector<Beam> lamps(int count) {
 Scene corrugated(int cells) {
   Scene scene;
   scene.surfaces.push_back(grey_surface("foil", 0.4, 0.2));
-  Mesh mesh;
-  for (int j = 0; j <= cells; ++j) {
-    for (int i = 0; i <= cells; ++i) {
-      const double x = i / static_cast<double>(cells) - 0.5,
-                   y = j / static_cast<double>(cells) - 0.5;
-      mesh.vertices_m.emplace_back(field_m * x, field_m * y,
-                                   0.02 * std::sin(40 * x) * std::cos(30 * y));
-    }
-  }
-  const auto row = static_cast<uint32_t>(cells) + 1;
-  for (uint32_t j = 0; j + 1 < row; ++j) {
-    for (uint32_t i = 0; i + 1 < row; ++i) {
-      const uint32_t at = j * row + i, up = at + row;
-      mesh.triangles.push_back({at, at + 1, up + 1});
-      mesh.triangles.push_back({at, up + 1, up});
-    }
-  }
-  add_part(scene, std::move(mesh), "sheet");
+  const auto wave_m = [](double x, double y) { return 0.02 * std::sin(40 * x) * std::cos(30 * y); };
+  add_part(scene, sheet(field_m, cells, wave_m), "sheet");
   return scene;
 }
 

@@ -19,48 +19,13 @@
 #include "receivers/flux_map.h"
 #include "receivers/gather/gather.h"
 #include "scenes/experiment/experiment.h"
-#include "sources/lamps/kind.h"
 #include "tools/benchmarks/benchmark_scene.h"
 
 namespace photorque {
 namespace {
 
-SettingsNode number(double x) {
-  return {x, {}};
-}
-SettingsNode text(const char* t) {
-  return {std::string(t), {}};
-}
-SettingsNode vector(const Vec3& v) {
-  return {SettingsNode::Array{number(v.x()), number(v.y()), number(v.z())}, {}};
-}
-
-std::vector<Beam> lamp(SettingsNode::Table table) {
-  const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{std::move(table), {}}));
-  for (const SourceKind& kind : all_source_kinds()) {
-    if (kind.name == "led") return kind.make(settings, {});
-  }
-  return {};
-}
-
-// A plate of `cells`² squares about the origin in the plane z.
 Mesh plate(double side_m, int cells, double z_m) {
-  Mesh mesh;
-  for (int j = 0; j <= cells; ++j) {
-    for (int i = 0; i <= cells; ++i) {
-      mesh.vertices_m.emplace_back(side_m * (i / static_cast<double>(cells) - 0.5),
-                                   side_m * (j / static_cast<double>(cells) - 0.5), z_m);
-    }
-  }
-  for (int j = 0; j < cells; ++j) {
-    for (int i = 0; i < cells; ++i) {
-      const auto at = static_cast<uint32_t>(j * (cells + 1) + i);
-      const auto up = at + static_cast<uint32_t>(cells) + 1;
-      mesh.triangles.push_back({at, at + 1, up + 1});
-      mesh.triangles.push_back({at, up + 1, up});
-    }
-  }
-  return mesh;
+  return sheet(side_m, cells, [z_m](double, double) { return z_m; });
 }
 
 Mesh box(const Vec3& low, const Vec3& high) {
@@ -84,14 +49,14 @@ Case case_a() {
   a.scene.surfaces.push_back(grey_surface("black", 0, 0));
   add_part(a.scene, plate(0.5, 1, 0.0), "receiver");
   add_part(a.scene, box(Vec3(0, -0.02, 0.5), Vec3(0.1, 0.08, 0.55)), "box");
-  a.beams = lamp({{"power_W", number(1)},
-                  {"aperture_diameter_m", number(0.4)},
-                  {"profile", text("pillbox")},
-                  {"half_angle_deg", number(1.5)},
-                  {"pillbox_measure", text("angle")},
-                  {"wavelength_nm", number(730)},
-                  {"position_m", vector(Vec3(0, 0, 1.5))},
-                  {"aim_m", vector(Vec3::Zero())}});
+  a.beams = make_beams("led", {{"power_W", {1.0}},
+                               {"aperture_diameter_m", {0.4}},
+                               {"profile", {"pillbox"}},
+                               {"half_angle_deg", {1.5}},
+                               {"pillbox_measure", {"angle"}},
+                               {"wavelength_nm", {730.0}},
+                               {"position_m", vector_node(Vec3(0, 0, 1.5))},
+                               {"aim_m", vector_node(Vec3::Zero())}});
   return a;
 }
 
@@ -105,15 +70,7 @@ Case case_b() {
              "post_" + std::to_string(k));
   }
   for (int k = 0; k < 50; ++k) {
-    const Vec3 at(0.06 * (k % 10) - 0.27, 0.1 * (k / 10) - 0.2, 1.5);
-    auto beams = lamp({{"power_W", number(1)},
-                       {"aperture_diameter_m", number(0.045)},
-                       {"profile", text("gaussian")},
-                       {"fwhm_deg", number(3)},
-                       {"wavelength_nm", number(730)},
-                       {"position_m", vector(at)},
-                       {"aim_m", vector(Vec3(0.5 * at.x(), 0.5 * at.y(), 0))}});
-    b.beams.insert(b.beams.end(), beams.begin(), beams.end());
+    add_led(b.beams, Vec3(0.06 * (k % 10) - 0.27, 0.1 * (k / 10) - 0.2, 1.5), 0.045);
   }
   return b;
 }
@@ -170,13 +127,9 @@ Case one_mirror(bool whole_disc) {
   add_part(one.scene, std::move(receiver), "receiver");
   one.scene.instances.back().front_surface = 2;
   one.scene.instances.back().back_surface = 1;
-  const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{
-      SettingsNode::Table{{"direction", vector(Vec3(0, 0, -1))}, {"irradiance_W_m2", number(1000)}},
-      {}}));
-  for (const SourceKind& kind : all_source_kinds()) {
-    if (kind.name != "sun") continue;
-    one.beams = kind.make(settings, {.scene_radius_m = one.scene.radius_m(), .notice = {}});
-  }
+  one.beams =
+      make_beams("sun", {{"direction", vector_node(Vec3(0, 0, -1))}, {"irradiance_W_m2", {1000.0}}},
+                 {.scene_radius_m = one.scene.radius_m(), .notice = {}});
   if (whole_disc) one.beams[0].emitter = std::make_shared<WholeDisc>(one.beams[0].emitter);
   return one;
 }

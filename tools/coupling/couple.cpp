@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "attitude/propagation/recorded.h"
+#include "attitude/propagation/time_history.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
@@ -195,12 +196,8 @@ void add_events(PropagationResult& result, const CoupledRun& beside) {
     }
   }
   std::ranges::stable_sort(events, {}, &Event::time_s);
-  Table table = Table::of("events", "What happened");
-  for (const Event& event : events) {
-    table.row().set("event", event.name).set("t_s", event.time_s);
-  }
   std::erase_if(result.product.tables, [](const Table& one) { return one.name == "events"; });
-  if (!events.empty()) result.product.tables.push_back(std::move(table));
+  if (!events.empty()) result.product.tables.push_back(event_table(events));
 }
 
 bool hits_tilt_limit(const PropagationResult& result) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attitude/propagation/time_history.h"
 #include "core/constants.h"
-#include "core/numerics/extremes.h"
 
 namespace photorque {
 namespace {
@@ -39,44 +39,26 @@ std::vector<EnergyRow> energy_rows(const CoupledRun& run) {
   return rows;
 }
 
-std::vector<double> sizes_of(const Table& history, const std::string& stem) {
-  const auto& x = history.column(stem + "_x_N_m").values;
-  const auto& y = history.column(stem + "_y_N_m").values;
-  const auto& z = history.column(stem + "_z_N_m").values;
-  std::vector<double> sizes(x.size());
-  for (size_t i = 0; i < x.size(); ++i) sizes[i] = std::hypot(x[i], y[i], z[i]);
-  return sizes;
-}
-
-Plot::Curve curve(const std::string& label, const std::vector<double>& x,
-                  const std::vector<double>& y) {
-  constexpr size_t most = 1400;
-  Plot::Curve c;
-  c.label = label;
-  c.width = 1.2;
-  for (const size_t i : lows_and_highs(y, most)) {
-    c.x.push_back(x[i]);
-    c.y.push_back(y[i]);
-  }
-  return c;
-}
-
 Plot together(const Table& power, const Table& history) {
   const std::vector<double>& t = power.column("t_s").values;
   const std::vector<double>& moved = history.column("t_s").values;
   Plot plot{"power_and_attitude", "Power, charge, attitude and torque", "time [s]", "power [W]"};
-  Plot::Curve load = curve("load served", t, power.column("load_power_W").values);
-  load.colour = Plot::Colour::grey;
-  plot.curves = {load, curve("array", t, power.column("array_power_W").values)};
-  if (power.find("battery_charge_Wh") != nullptr) {
-    plot.below.push_back(
-        {"battery [Wh]", {curve("", t, power.column("battery_charge_Wh").values)}});
+  plot.curves = {thinned_curve(t, power.column("load_power_W").values),
+                 thinned_curve(t, power.column("array_power_W").values)};
+  plot.curves[0].label = "load served";
+  plot.curves[0].colour = Plot::Colour::grey;
+  plot.curves[1].label = "array";
+  const auto add = [&](const char* label, const std::vector<double>& x,
+                       const std::vector<double>& y) {
+    plot.below.push_back({label, {thinned_curve(x, y)}});
+  };
+  if (const Table::Column* charge = power.find("battery_charge_Wh")) {
+    add("battery [Wh]", t, charge->values);
   }
-  plot.below.push_back({"cells [K]", {curve("", t, power.column("cell_temperature_K").values)}});
-  plot.below.push_back({"tilt [deg]", {curve("", moved, history.column("tilt_deg").values)}});
+  add("cells [K]", t, power.column("cell_temperature_K").values);
+  add("tilt [deg]", moved, history.column("tilt_deg").values);
   if (history.find("torque_radiation_pressure_x_N_m") != nullptr) {
-    plot.below.push_back(
-        {"light [N m]", {curve("", moved, sizes_of(history, "torque_radiation_pressure"))}});
+    add("light [N m]", moved, torque_sizes(history, "radiation_pressure"));
   }
   return plot;
 }
@@ -278,8 +260,7 @@ Product pointing_product(const std::vector<PlatformState>& states) {
                         {"pointing_95_percent_deg", {quantile(off, 0.95), 0.0}},
                         {"pointing_99_7_percent_deg", {quantile(off, 0.997), 0.0}},
                         {"pointing_max_deg", {off.back(), 0.0}}};
-  Table stability = Table::of("pointing_stability", "Rotation of the z axis within a window",
-                              {"window_s", "rms_deg", "percent_95_deg", "max_deg"});
+  Table stability = Table::of("pointing_stability", "Rotation of the z axis within a window");
   const double step_s = states[1].time_s - states[0].time_s;
   for (const double window_s : {1.0, 10.0, 100.0, 1000.0}) {
     const auto rows = static_cast<size_t>(std::llround(window_s / step_s));
@@ -302,7 +283,7 @@ Product pointing_product(const std::vector<PlatformState>& states) {
         .set("percent_95_deg", quantile(turns, 0.95))
         .set("max_deg", turns.back());
   }
-  if (!stability.columns.front().values.empty()) product.tables.push_back(std::move(stability));
+  if (!stability.columns.empty()) product.tables.push_back(std::move(stability));
   return product;
 }
 

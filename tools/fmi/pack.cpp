@@ -200,15 +200,14 @@ struct StagingFolder {
 };
 
 // Changes file names in texts so that the files are in the experiment's folder of the unit.
-void name_beside(SettingsNode& node, const fs::path& folder) {
-  if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
-    for (auto& [key, item] : *table) name_beside(item, folder);
-  } else if (auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (SettingsNode& item : *items) name_beside(item, folder);
-  } else if (auto* text = std::get_if<std::string>(&node.value)) {
-    if (!fs::path(*text).is_absolute() || named_file(folder, *text).empty()) return;
+void name_beside(SettingsNode& root, const fs::path& folder) {
+  for_each_node(root, [&](SettingsNode& node) {
+    auto* text = std::get_if<std::string>(&node.value);
+    if (text == nullptr || !fs::path(*text).is_absolute() || named_file(folder, *text).empty()) {
+      return;
+    }
     *text = fs::path(*text).lexically_normal().lexically_relative(folder).generic_string();
-  }
+  });
 }
 
 fs::path common_folder(fs::path folder, const std::set<fs::path>& files) {

@@ -37,12 +37,7 @@ std::string note_on(const Alternative& alternative, double best_log_evidence) {
 
 Plot::Curve curve_through(const std::vector<double>& x, const std::vector<double>& y,
                           Plot::Colour colour, double width) {
-  Plot::Curve curve;
-  curve.x = x;
-  curve.y = y;
-  curve.colour = colour;
-  curve.width = width;
-  return curve;
+  return {.x = x, .y = y, .colour = colour, .width = width};
 }
 
 std::vector<Plot::Curve> readings_and_models(const ChannelSeries& channel) {

@@ -42,13 +42,6 @@ std::string keyed(const std::string& element, const std::string& key, const Esti
          round_trip_number(number.standard_error) + "\">" + text + "</" + element + ">";
 }
 
-std::string with_true_minus(std::string text) {
-  for (size_t at = 0; (at = text.find('-', at)) != std::string::npos; at += 3) {
-    text.replace(at, 1, "−");
-  }
-  return text;
-}
-
 std::string estimate_text(const Estimate& number) {
   std::string text = with_true_minus(show(number, ""));
   text.erase(text.find_last_not_of(' ') + 1);

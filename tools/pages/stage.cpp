@@ -9,7 +9,6 @@
 #include "images/browser/content.h"
 #include "raytrace/tracing/view.h"
 #include "receivers/surface_grid.h"
-#include "receivers/torque_map.h"
 
 namespace photorque {
 namespace {

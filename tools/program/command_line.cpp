@@ -63,13 +63,6 @@ std::string troff_options(const CLI::App& app) {
   return text;
 }
 
-// Text in single quotes for a shell.
-std::string in_quotes(const std::string& text) {
-  std::string safe = "'";
-  for (const char c : text) safe += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return safe + "'";
-}
-
 std::string words_of(const CLI::App& app) {
   return joined_text(options_of(app), " ",
                      [&](const CLI::Option* option) { return name_of(*option); });
@@ -114,13 +107,13 @@ std::string zsh_text(const std::string& text) {
 std::string zsh_script(const CLI::App& app) {
   std::string names, cases;
   for (const CLI::App* command : commands_of(app)) {
-    names +=
-        "    " + in_quotes(command->get_name() + ":" + zsh_text(command->get_description())) + "\n";
+    names += "    " + shell_word(command->get_name() + ":" + zsh_text(command->get_description())) +
+             "\n";
     cases += "    " + command->get_name() + ")\n      _arguments";
     for (const CLI::Option* option : options_of(*command)) {
       cases += " \\\n        " +
-               in_quotes("*" + name_of(*option) + "[" + zsh_text(option->get_description()) + "]" +
-                         (takes_value(*option) ? ":" + value_name(*option) + ":_files" : ""));
+               shell_word("*" + name_of(*option) + "[" + zsh_text(option->get_description()) + "]" +
+                          (takes_value(*option) ? ":" + value_name(*option) + ":_files" : ""));
     }
     cases += " \\\n        '*:file:_files' ;;\n";
   }
@@ -147,12 +140,12 @@ std::string fish_script(const CLI::App& app) {
   std::string text = "# fish completion of photorque\n";
   for (const CLI::App* command : commands_of(app)) {
     text += "complete -c photorque -n __fish_use_subcommand -f -a " + command->get_name() + " -d " +
-            in_quotes(command->get_description()) + "\n";
+            shell_word(command->get_description()) + "\n";
     for (const CLI::Option* option : options_of(*command)) {
       const std::string name = name_of(*option);
       text += "complete -c photorque -n '__fish_seen_subcommand_from " + command->get_name() +
               "' " + (name.starts_with("--") ? "-l " + name.substr(2) : "-s " + name.substr(1)) +
-              (takes_value(*option) ? " -r" : "") + " -d " + in_quotes(option->get_description()) +
+              (takes_value(*option) ? " -r" : "") + " -d " + shell_word(option->get_description()) +
               "\n";
     }
   }

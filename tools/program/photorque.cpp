@@ -16,8 +16,6 @@
 #include <system_error>
 
 #include "core/errors.h"
-#include "core/provenance.h"
-#include "core/settings/settings.h"
 #include "core/text/format.h"
 #include "images/writers/loading.h"
 #include "images/writers/staged_files.h"

@@ -40,9 +40,7 @@ void print_requirements(const Console& console, const ArrayTarget& target,
 Table tilted_table(const Console& console, const ArrayTarget& target,
                    const std::vector<PublishedFigure>& published, const ArrayResult& result,
                    double tilt_rad) {
-  Table table = Table::of("target", "Published powers of the tilted array",
-                          {"quantity", "tilt_deg", "published_W", "cosine_W", "further_factor",
-                           "ours_W", "our_further_factor"});
+  Table table = Table::of("target", "Published powers of the tilted array");
   for (const PublishedFigure& figure : published) {
     const auto ours_W = power_of(result, figure.quantity);
     constexpr double edge_on = 1e-6;
@@ -113,7 +111,7 @@ Product target_report(const Console& console, const ArrayTarget& target,
   Product product;
   print_requirements(console, target, result, light);
   Table tilted = tilted_table(console, target, published, result, tilt_rad);
-  if (!tilted.column("quantity").texts.empty()) product.tables.push_back(std::move(tilted));
+  if (!tilted.columns.empty()) product.tables.push_back(std::move(tilted));
   const double irradiance = result.power_on_cells_W.value / result.area_of_cells_m2;
   product.tables.push_back(known_cell_table(console, design, light, irradiance));
   product.tables.push_back(sensitivity_table(console, design, result));
@@ -131,11 +129,9 @@ CellTables tables_for(const ArrayPower& array, const ArrayResult& result,
 
 Product tracker_product(const std::vector<TrackerRun>& runs) {
   Product product;
-  Table table =
-      Table::of("trackers", "Trackers while the platform moves",
-                {"tracker", "efficiency", "false_maximum_s", "energy_J", "best_energy_J"});
+  Table table = Table::of("trackers", "Trackers while the platform moves");
   Plot plot{"tracking", "Trackers while the platform moves", "time [s]", "power [W]"};
-  Plot::Panel voltage{"voltage [V]", {}, false};
+  Plot::Panel voltage{"voltage [V]"};
   for (const TrackerRun& run : runs) {
     const std::string name = name_of(run.tracker.kind);
     table.row()
@@ -145,11 +141,11 @@ Product tracker_product(const std::vector<TrackerRun>& runs) {
         .set("energy_J", run.energy_J)
         .set("best_energy_J", run.best_energy_J);
     if (plot.curves.empty()) {
-      plot.curves.push_back({"global maximum", run.time_s, run.best_W, {}, false});
-      voltage.curves.push_back({"global maximum", run.time_s, run.best_V, {}, false});
+      plot.curves.push_back({"global maximum", run.time_s, run.best_W});
+      voltage.curves.push_back({"global maximum", run.time_s, run.best_V});
     }
-    plot.curves.push_back({name, run.time_s, run.power_W, {}, false});
-    voltage.curves.push_back({name, run.time_s, run.voltage_V, {}, false});
+    plot.curves.push_back({name, run.time_s, run.power_W});
+    voltage.curves.push_back({name, run.time_s, run.voltage_V});
     product.quantities.push_back({"tracking_efficiency_" + name, {run.efficiency, 0.0}});
     product.quantities.push_back({"false_maximum_" + name + "_s", {run.false_maximum_s, 0.0}});
   }

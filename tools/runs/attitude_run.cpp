@@ -19,16 +19,14 @@ constexpr const char* optical_tables[] = {"scene", "material",   "source", "rece
                                           "trace", "torque_map", "camera", "effect"};
 
 // Collects the files that texts of the experiment name, relative to its folder.
-void collect_files(const SettingsNode& node, const std::filesystem::path& folder,
+void collect_files(const SettingsNode& root, const std::filesystem::path& folder,
                    std::vector<std::filesystem::path>& files) {
-  if (const auto* text = std::get_if<std::string>(&node.value)) {
+  for_each_node(root, [&](const SettingsNode& node) {
+    const auto* text = std::get_if<std::string>(&node.value);
+    if (text == nullptr) return;
     std::filesystem::path path = named_file(folder, *text);
     if (!path.empty()) files.push_back(std::move(path));
-  } else if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (const SettingsNode& item : *items) collect_files(item, folder, files);
-  } else if (const auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
-    for (const auto& [key, value] : *table) collect_files(value, folder, files);
-  }
+  });
 }
 
 bool is_optical(const std::string& key) {

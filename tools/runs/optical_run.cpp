@@ -292,8 +292,7 @@ Product OpticalRun::product(const OpticalResult& result) const {
     product.quantities.push_back({"direct_on_" + direct.name + "_W", direct.gathered_W});
     product.quantities.push_back({"direct_by_rays_on_" + direct.name + "_W", direct.rays_W});
   }
-  Table parts = Table::of("absorbed_by_part", "Power absorbed by each part",
-                          {"part", "absorbed_W", "standard_error_W"});
+  Table parts = Table::of("absorbed_by_part", "Power absorbed by each part");
   for (size_t i = 0; i < power_balance.absorbed_by_instance_W.size(); ++i) {
     const Estimate& absorbed_W = power_balance.absorbed_by_instance_W[i];
     parts.row()

@@ -43,16 +43,13 @@ std::vector<PublishedFigure> read_published(const std::vector<Settings>& tables)
 
 Product compare_published(const std::vector<PublishedFigure>& figures, double tilt_rad,
                           const Product& product, const Console& console) {
-  Table table = Table::of(
-      "published", "Published figures compared with photorque",
-      {"quantity", "source", "why", "published", "rounded_to", "ours", "standard_error", "ratio"});
+  Table table = Table::of("published", "Published figures compared with photorque");
   std::optional<double> misfit;
   for (const PublishedFigure& figure : figures) {
     if (std::abs(figure.tilt_rad - tilt_rad) > 1e-6) continue;
     for (const Quantity& quantity : product.quantities) {
       if (quantity.name != figure.quantity) continue;
-      if (table.column("quantity").texts.empty())
-        console.heading("Published figures compared with photorque");
+      if (table.columns.empty()) console.heading(table.title);
       const double ours = quantity.estimate.value;
       table.row()
           .set("quantity", figure.quantity)
@@ -79,7 +76,7 @@ Product compare_published(const std::vector<PublishedFigure>& figures, double ti
     }
   }
   Product compared;
-  if (!table.column("quantity").texts.empty()) compared.tables.push_back(std::move(table));
+  if (!table.columns.empty()) compared.tables.push_back(std::move(table));
   if (misfit) compared.quantities.push_back({"published_misfit", {*misfit, 0.0}});
   return compared;
 }

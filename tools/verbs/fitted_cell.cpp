@@ -147,8 +147,8 @@ Plot::Curve residuals_of(const Plot::Curve& measured, const Plot::Curve& fitted)
 void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
                   const std::vector<ArrayPoint>& maxima, Product& product) {
   Plot plot{"fit", "Measured and fitted", "voltage [V]", "current [A]"};
-  Plot::Panel power{"power [W]", {}, false};
-  Plot::Curve measured{"measured", {}, {}, {}, true}, line{"fitted", {}, {}, {}, false};
+  Plot::Panel power{"power [W]"};
+  Plot::Curve measured{"measured", {}, {}, {}, true}, line{"fitted"};
   for (const IvSweep& sweep : task.sweeps) {
     measured.x.insert(measured.x.end(), sweep.voltage_V.begin(), sweep.voltage_V.end());
     measured.y.insert(measured.y.end(), sweep.current_A.begin(), sweep.current_A.end());

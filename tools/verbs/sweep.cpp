@@ -1,6 +1,5 @@
 // photorque sweep: one command over many designs, with the results in one table.
 #include <algorithm>
-#include <cstdio>
 
 #include "tools/verbs/studies.h"
 

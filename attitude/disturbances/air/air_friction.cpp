@@ -1,9 +1,6 @@
-// Laminar boundary layers on a rotating body: T = −k |ω|^½ ω (eq. 18, 20, 21).
-//
-// coefficient: k ≥ 0 [N m s^1.5]. Instead, one [[disturbance.part]] for each body of
-// external_air.h, whose friction about the vertical axis is summed for the air of the environment.
-// The law applies to all axes.
-
+// Laminar boundary layers on a rotating body: T = −k |ω|^½ ω (eq. 18, 20, 21), about all axes. The
+// friction of parts (external_air.h) is that about the vertical axis, for the air of the
+// environment.
 #include "attitude/disturbances/air/external_air.h"
 #include "attitude/disturbances/kind.h"
 

@@ -1,8 +1,5 @@
-// Form drag of parts in the air: T = −k |ω| ω (eq. 22).
-//
-// coefficient_N_m_s2: k ≥ 0 for all axes, or three numbers, T = −|ω| diag(k) ω. Instead, one
-// [[disturbance.part]] for each part of external_air.h, whose form drags about the vertical axis
-// are summed.
+// Form drag of parts in the air: T = −k |ω| ω, or −|ω| diag(k) ω (eq. 22). The form drag of parts
+// (external_air.h) is that about the vertical axis.
 #include "attitude/disturbances/air/external_air.h"
 #include "attitude/disturbances/kind.h"
 

@@ -170,9 +170,7 @@ std::vector<AirPart> read_air_parts(const std::vector<Settings>& parts) {
 }
 
 Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_rad_s) {
-  Table table =
-      Table::of("external_air", "External air by part",
-                {"part", "law_holds", "torque_N_m", "share", "reynolds", "transition_reynolds"});
+  Table table = Table::of("external_air", "External air by part");
   const double whole_N_m = air_coefficients(parts, air).torque_N_m(rate_rad_s);
   for (const AirPart& part : parts) {
     const AirFlow flow = air_flow(part, air, rate_rad_s);

@@ -1,7 +1,5 @@
-// A steady draught in the room: a torque that is constant in the lab.
-//
-// torque_lab_N_m[3]. The part of the torque that changes with the attitude, due to the shape of the
-// platform, is not modelled.
+// A steady draught in the room: a torque that is constant in the lab. The part of the torque that
+// changes with the attitude, due to the shape of the platform, is not modelled.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::room_draft {

@@ -1,13 +1,6 @@
-// Viscous drag of the air film: T = −c ω (eq. 5, 14–17).
-//
-// One of three forms:
-//   coefficient_N_m_s: the coefficient about every axis.
-//   axial_N_m_s and transverse_N_m_s: about the socket's axis (lab z) and perpendicular to it.
-//   socket = {radius_m, half_angle_deg, gap_m, recess_half_angle_deg (0), sheared_share (1)}, see
-//     air_bearing.h. gap_m is the gap under the platform's weight. With rated_load_N and
-//     stiffness_N_m it is the rated gap of a spring (the paper's model). With supply_Pa (absolute),
-//     hole_area_mm2 and discharge_coefficient (0.8) it must be absent and follows from the balance
-//     in air_bearing.h.
+// Viscous drag of the air film: T = −c ω (eq. 5, 14–17). c is equal about every axis, or has two
+// values: about the socket's axis (lab z) and perpendicular to it. The model of the air film that
+// gives both, also for a gap that follows from the supply, is air_bearing.h.
 #include "attitude/disturbances/bearing/air_bearing.h"
 #include "attitude/disturbances/kind.h"
 

@@ -1,12 +1,10 @@
 // Friction with a magnitude that does not depend on the rate: T = −τ ω/|ω|, a bearing that touches.
 //
-// torque_N_m: τ ≥ 0. For a platform with one axis, the propagator keeps the direction of slip
-// constant within a step and ends steps at sign changes of the rate. The platform then sticks until
-// the other torques exceed τ (attitude/propagation/dry_contact.h).
-//
-// About three axes, the torque decreases linearly to zero below creep_rate_rad_s (default 1e-6), so
-// that the law has a derivative at rest: T = −τ ω/√(ω² + creep²). Sticking is then a creep that is
-// too slow to be measured.
+// For a platform with one axis, the propagator keeps the direction of slip constant within a step
+// and ends steps at sign changes of the rate. The platform then sticks until the other torques
+// exceed τ (attitude/propagation/dry_contact.h). About three axes, the torque decreases linearly to
+// zero at small rates, so that the law has a derivative at rest: T = −τ ω/√(ω² + creep²). Sticking
+// is then a creep that is too slow to be measured.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::dry_friction {

@@ -1,14 +1,10 @@
-// A cable or hose that pulls the platform back to zero attitude: T = −k r, where r is the rotation
-// vector from zero attitude.
+// A cable or hose that pulls the platform back to zero attitude, without hysteresis: T = −k r,
+// where r is the rotation vector from zero attitude.
 //
-// stiffness_N_m_per_rad: k ≥ 0 for all axes, without hysteresis.
-// pull_N_m (default 0): the torque at zero attitude, about the only axis or else about body z. A
-// platform with one axis has no torque at the angle pull/k.
-// winds_up (default false): with false, r is the shortest rotation and changes its side at half a
-// turn, as in the catalogue. With true, whole turns n about body z are added, T = −k (r + 2π n z),
-// so that the torque about z continues to increase; the part of r due to a tilt still changes its
-// side. A run starts with less than half a turn. For a platform with one axis, r is the angle about
-// it, always with whole turns.
+// r is the shortest rotation and changes its side at half a turn, as in the catalogue. With
+// winds_up, whole turns n about body z are added, T = −k (r + 2π n z), so that the torque about z
+// continues to increase; the part of r due to a tilt still changes its side. A run starts with less
+// than half a turn. For a platform with one axis, r is the angle about it, always with whole turns.
 #include <array>
 #include <cmath>
 

@@ -1,7 +1,6 @@
-// A swirl of the air that leaves the socket drives the ball: a constant torque about lab z.
-//
-// torque_N_m: positive counterclockwise from above. The supply is assumed to be steady and the gap
-// independent of the attitude. Catalogues state no value; it is measured or fitted.
+// A swirl of the air that leaves the socket drives the ball: a constant torque about lab z. The
+// supply is assumed to be steady and the gap independent of the attitude. Catalogues state no
+// value; it is measured or fitted.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::turbine_torque {

@@ -1,16 +1,9 @@
 // The residual atmosphere pushes on a spacecraft in a low orbit: T = scale ½ρv² table(direction
-// that the wind comes from). Needs an `orbit`. v is the velocity of the orbit less that of an
-// atmosphere that turns with the Earth.
+// that the wind comes from). Needs an `orbit`, which does not change. v is the velocity of the
+// orbit less that of an atmosphere that turns with the Earth.
 //
-// table: of torque-map over the sphere for a gas flow ([torque_map.molecular_flow]), per pascal of
-// dynamic pressure. Speed ratio, accommodation and temperatures are those of the table.
-// density_kg_m3; or density_file, a CSV with t_s and density_kg_m3 (constant before its first and
-// after its last row); without both, a mean atmosphere by the altitude
-// (attitude/environment/thermosphere.h). scale: default 1.
-//
-// The orbit itself does not change.
-#include <functional>
-#include <memory>
+// The table is per pascal of dynamic pressure; speed ratio, accommodation and temperatures are
+// those of its gas flow. The mean atmosphere is attitude/environment/thermosphere.h.
 
 #include "attitude/disturbances/fields/torque_surface.h"
 #include "attitude/disturbances/kind.h"

@@ -1,7 +1,6 @@
-// Eddy currents in a conductor that turns in the ambient field: T = k (ω × B_B) × B_B.
-//
-// coefficient_N_m_s_per_T2: k ≥ 0; for a thin spherical shell (2π/3) σ R⁴ δ. Valid if the field
-// changes slowly in the conductor (skin depth ≫ thickness), which is always true at these rates.
+// Eddy currents in a conductor that turns in the ambient field: T = k (ω × B_B) × B_B. Valid if the
+// field changes slowly in the conductor (skin depth ≫ thickness), which is always true at these
+// rates.
 // Source: G. L. Smith, A theoretical study of the torques induced by a magnetic field on rotating
 // cylinders and spinning thin-wall cones, cone frustums, and general body of revolution, NASA TR
 // R-129 (1962).

@@ -1,15 +1,6 @@
-// A coil cage that sets the field at the platform: it cancels the ambient field or applies a
-// history.
-//
-// The field, in lab axes, is one of
-//   nothing: zero;
-//   field_lab_T[3]: constant;
-//   field_file: a CSV with t_s, field_x_T, field_y_T, field_z_T, constant before and after;
-//   the table orbit = {altitude_m, inclination_deg, date_year, duration_s, ascending_node_deg (0),
-//     phase_deg (0), greenwich_angle_deg (0), interval_s (20)}: IGRF along a circular orbit, with
-//     the lab axes as inertial axes (coil_cage.h).
-// gain_error (default 0): the coils produce 1 + gain_error times the difference to the field of the
-// environment. The field is assumed to be uniform over the platform.
+// A coil cage that sets the field at the platform, in lab axes: it cancels the ambient field or
+// applies a history. The axes of the lab are the inertial axes of an orbit (coil_cage.h). The field
+// is assumed to be uniform over the platform.
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"

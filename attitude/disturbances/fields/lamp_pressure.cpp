@@ -1,8 +1,6 @@
-// Radiation pressure of lamps in the laboratory: T = torque · (their current / led_current_A).
-//
-// torque_lab_N_m[3]: the torque at the lamp current led_current_A, lab axes. The current is a
-// channel of the recording, held from row to row; without it, it is led_current_A. The change of
-// the torque with the attitude is not modelled; radiation_pressure has a table for it.
+// Radiation pressure of lamps in the laboratory: T = torque · (their current / led_current_A). The
+// current is a channel of the recording, held from row to row; without it, it is led_current_A. The
+// change of the torque with the attitude is not modelled; radiation_pressure has a table for it.
 //
 // Under constant light, a draught has the torque of lamps. A change of their current distinguishes
 // the two.

@@ -1,8 +1,5 @@
-// A dipole in the ambient field: T = m × B_B (eq. 26–28).
-//
-// dipole_A_m2[3]: body axes. Instead, one [[disturbance.loop]] for each current loop of coil_cage.h
-// (current_A, turns, area_m2[3] or corners_m), which are summed. Remanent steel and loops have
-// equal effects.
+// A dipole in the ambient field: T = m × B_B (eq. 26–28). Remanent steel and current loops
+// (coil_cage.h) have equal effects.
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/kind.h"
 

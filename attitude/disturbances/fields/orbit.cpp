@@ -1,16 +1,6 @@
 // A spacecraft in orbit instead of a platform in a laboratory: free fall, the direction of the
-// Earth, the gravity gradient, the magnetic field and the Earth's shadow. The lab axes are
-// inertial, with z along the Earth's axis.
-//
-// A circular orbit: altitude_m above 6371.2 km, inclination_deg, ascending_node_deg (0), phase_deg
-// (0; argument of latitude at time 0), greenwich_angle_deg (0). Instead, the states of an OEM:
-// ephemeris, and epoch, the calendar time of t = 0 (default: the first usable state).
-//
-// date_year: the field is that of IGRF along the orbit; without it there is none. For a circular
-// orbit it is computed for duration_s (default 86400).
-//
-// sun_direction[3] (any length; default: that of [environment.sun]): the Sun, with the Earth's
-// shadow and its penumbra. Without a direction there is no eclipse.
+// Earth, the gravity gradient, the magnetic field and the Earth's shadow with its penumbra. The lab
+// axes are inertial, with z along the Earth's axis. The orbit is a circle or the states of an OEM.
 #include <algorithm>
 #include <cmath>
 #include <memory>

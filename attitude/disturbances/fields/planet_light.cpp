@@ -1,15 +1,7 @@
 // The pressure of the light from the planet: reflected sunlight and thermal infrared, by Knocke,
-// Ries and Tapley (attitude/environment/planet_light.h). Needs an `orbit`.
-//
-// table: result of torque-map over azimuth and elevation, traced in sunlight of
-// table_irradiance_W_m2 (default: that of the Sun at 1 au). infrared_table: the table for infrared
-// light, for which the surfaces have other optical properties; without it, infrared is treated like
-// sunlight. sun_direction[3] (any length): direction of the Sun, by default that of `orbit`.
-// albedo, emissivity: means over the planet. zonal: variation with latitude as on the Earth;
-// date_year adds its seasons. irradiance_W_m2: of the Sun at the planet. scale: default 1.
-//
-// The night side reflects nothing, so an eclipse needs no extra term. Infrared remains.
-
+// Ries and Tapley (attitude/environment/planet_light.h). Needs an `orbit`. Surfaces have other
+// optical properties for infrared light, hence its table. The night side reflects nothing, so an
+// eclipse needs no extra term. Infrared remains.
 #include "attitude/environment/planet_light.h"
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/fields/torque_surface.h"

@@ -1,10 +1,6 @@
-// The battery current: the load minus the power of the solar array, at the battery's voltage.
-//
-// load_W: the load. The power of the array is one of
-//   array_power_W (default 0): at zero tilt in full light, proportional to the cosine of the tilt;
-//   tilt_deg = [0, …], power_W = […]: a table, for example from `sweep`, constant beyond its end;
-// both multiplied by the illumination and by array_scale (default 1). If a recording or a file of
-// commands has the battery current, it is the only current.
+// The battery current: the load minus the power of the solar array, at the battery's voltage. The
+// power of the array is multiplied by the illumination. If a recording or a file of commands has
+// the battery current, it is the only current.
 //
 // If the battery's capacity is known, a controller reduces the current exponentially within about
 // the last per cent: a full battery is not charged, an empty one not discharged.

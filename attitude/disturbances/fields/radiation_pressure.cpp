@@ -1,22 +1,16 @@
-// The pressure of light, in one of two forms.
+// The pressure of light, in one of two forms. It is proportional to the illumination in an eclipse.
 //
-// From a table of the ray tracer: T = scale · table(attitude).
+// From a table of the ray tracer (torque_surface.h): T = scale · table(attitude). A table over tilt
+// and heading applies to light that is symmetric about the vertical (a projector overhead). A table
+// over azimuth and elevation applies to distant light from one direction. The tracer sums the
+// momentum in minus the momentum out for each ray; the cosine of eq. 29 is already part of the
+// irradiance (docs/physics.md).
 //
 // Of sunlight on a spacecraft with few known properties: T = p s × a. p = 4.54e-6 Pa/r² is the
 // pressure at r au from the Sun and s the unit vector towards it. a is the sum over the lit
 // surfaces of projected area times position from the centre of mass, times one plus the reflected
 // fraction (J. R. Wertz, Spacecraft Attitude Determination and Control, 1978, sec. 17.2.2). The
 // projected area is assumed to be independent of the direction of the Sun.
-//
-// area_moment_m3[3]: a, body axes; the Sun is that of [environment.sun]. table: a CSV file
-// (torque_surface.h), with a path relative to the experiment. A table over tilt and heading applies
-// to light that is symmetric about the vertical (a projector overhead). A table over azimuth and
-// elevation applies to distant light from one direction, sun_direction_lab[3], towards the light.
-// scale: default 1. The torque is proportional to the illumination in an eclipse.
-//
-// The tracer sums the momentum in minus the momentum out for each ray. The cosine of eq. 29 is
-// already part of the irradiance (docs/physics.md).
-
 #include "attitude/disturbances/fields/torque_surface.h"
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"

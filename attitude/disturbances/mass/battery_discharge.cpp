@@ -1,13 +1,6 @@
 // Lithium migrates through the battery: T = m s Q(t) × g_B, where Q is the charge drawn (eq.
-// 30–34).
-//
-// shift_m_per_Ah[3]: shift of the centre of mass per charge, body axes. Instead, one
-// [[disturbance.cell]] for each cell with
-//   electrodes_m[3]: from the mean position of the lithium when charged to that when empty, body
-//     axes. Half a cell's length is the paper's upper bound; in wound cells it is smaller by orders
-//     of magnitude;
-//   charge_share: 1 in series (default), 1/n for n in parallel;
-// and lithium: "exact" (Faraday, default) or "rounded" (the paper's 0.3 g/Ah).
+// 30–34). Its displacement is from the mean position when charged to that when empty. Half a cell's
+// length is the paper's upper bound; in wound cells it is smaller by orders of magnitude.
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/mass/battery.h"
 

@@ -1,10 +1,7 @@
 // The structure bends under its weight: T = m C (g_B − g_ref) × g_B, where g_ref is the gravity at
-// zero attitude, at which the platform was balanced (eq. 2–3, corrected and generalised).
-//
-// compliance_s2: displacement of the centre of mass per unit of gravity, body axes: three numbers
-// (the diagonal) or a symmetric 3 × 3 matrix. Instead, the table dumbbell = {length_m, end_mass_kg,
-// beam_mass_kg, bending_stiffness_N_m2, axis (default x)} or tabletop = {length_m, total_mass_kg,
-// bending_stiffness_N_m2, count}, see sag_compliance.h.
+// zero attitude, at which the platform was balanced (eq. 2–3, corrected and generalised). The
+// compliance C is the displacement of the centre of mass per unit of gravity, body axes; that of
+// dumbbells and tabletops is computed in sag_compliance.h.
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/mass/sag_compliance.h"
 

@@ -1,16 +1,12 @@
-// An appendage on a spring, or sloshing liquid: one mode with two states.
-//
-// axis[3] (body, any length), frequency_Hz and damping (fraction of critical) of the appendage with
-// a fixed body, inertia_kg_m2 (J, about the axis; part of the platform's inertia). With the angle φ
-// of the appendage relative to the body and its absolute rate σ about the axis a:
+// An appendage on a spring, or sloshing liquid: one mode with two states. With the angle φ of the
+// appendage relative to the body, its absolute rate σ about the axis a and its inertia J, which is
+// part of the platform's:
 //   φ' = σ − a·ω,  σ' = −ω_n² φ − 2 ζ ω_n φ',  T = a J (ω_n² φ + 2 ζ ω_n φ') − ω × (J a σ)
 // and J a aᵀ no longer follows the body's acceleration.
 //
-// inertia_slope[6] (S: xx, yy, zz, xy, xz, yz; default 0): an appendage that is not symmetric about
-// its axis changes the inertia by φ J S, and the rotation drives it. To first order in φ
+// An appendage that is not symmetric about its axis changes the inertia by φ J S, and the rotation
+// drives it. To first order in φ
 //   σ' += ½ ωᵀ S ω,  T −= ½ a J ωᵀ S ω + J φ' S ω.
-// initial_angle_deg (default 0), initial_rate_rad_s (default a·ω: at rest relative to the body): φ
-// and σ at the start of a run.
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 

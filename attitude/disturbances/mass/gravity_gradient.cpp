@@ -1,7 +1,5 @@
-// Gravity decreases with height: T = 3 g/R up_B × I up_B; in orbit g/R is μ/r³.
-//
-// No parameters. The field is that of a point mass, to first order in the platform's size divided
-// by R.
+// Gravity decreases with height: T = 3 g/R up_B × I up_B; in orbit g/R is μ/r³. The field is that
+// of a point mass, to first order in the platform's size divided by R.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::gravity_gradient {

@@ -1,6 +1,4 @@
 // Gravity does not point along the lab's −z, because the camera that defines the lab is not level.
-//
-// tilt_rad[2]: the rotation vector, about lab x and y, from the lab's −z to gravity.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::gravity_tilt {

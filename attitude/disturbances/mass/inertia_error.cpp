@@ -1,6 +1,4 @@
-// The inertia about the centre of rotation is I + δ instead of the nominal I.
-//
-// delta_kg_m2[6]: xx, yy, zz, xy, xz, yz. I + δ must be an inertia tensor.
+// The inertia about the centre of rotation is I + δ, an inertia tensor, instead of the nominal I.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::inertia_error {

@@ -1,6 +1,4 @@
 // The mass is m + δ instead of the nominal m.
-//
-// delta_kg: δ. The sum must be positive.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::mass_error {

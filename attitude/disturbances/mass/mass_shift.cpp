@@ -1,7 +1,4 @@
 // A part slips: the effect of static_unbalance from one instant on.
-//
-// time_s: the instant. offset_m[3]: the shift of the centre of mass, body axes.
-
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::mass_shift {

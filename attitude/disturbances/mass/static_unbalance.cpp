@@ -1,7 +1,4 @@
 // The centre of mass differs from the centre of rotation: T = m r × g_B.
-//
-// offset_m[3]: from the centre of rotation, body axes. A platform that is stable at zero tilt has a
-// negative third component.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::static_unbalance {

@@ -1,11 +1,7 @@
-// Stepper motors place the balancing masses at whole steps only. Each mass is therefore displaced
-// from its target by up to half a step, which displaces the centre of mass of the platform (eq. 1).
-//
-// Keys: moving_mass_kg, lead_m, step_angle_deg (default 1.8), microsteps (default 1), directions
-// (default: the eight masses of the paper, 2 + 2 + 4 along x, y, z): see moving_masses.h.
-// rounding_steps[N]: deviation of each mass from its target, in commanded steps, within ±½.
-// Default: the worst case of eq. 1, ½ for the first mass along each direction and 0 for masses
-// parallel to it.
+// Stepper motors place the balancing masses (moving_masses.h) at whole steps only. Each mass is
+// therefore displaced from its target by up to half a step, which displaces the centre of mass of
+// the platform. By default the deviations are the worst case of eq. 1: half a step for the first
+// mass along each direction and none for masses parallel to it.
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/mass/moving_masses.h"
 

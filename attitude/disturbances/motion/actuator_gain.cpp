@@ -1,6 +1,4 @@
 // Actuators give more or less torque or force than commanded: T = gain_error × command is added.
-//
-// gain_error: one number, or one for each body axis; 0.1 is 10 % too much.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::actuator_gain {

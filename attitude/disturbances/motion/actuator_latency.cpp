@@ -1,6 +1,5 @@
-// Actuators act later than they are commanded: torques and forces of the commands are those of
-// latency_s before. Before the first command they are zero. The latency of a camera is
-// attitude_latency; the controller of wheel_control acts at once.
+// Actuators act later than they are commanded. Before the first command, torques and forces are
+// zero. The latency of a camera is attitude_latency; the controller of wheel_control acts at once.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::actuator_latency {

@@ -1,11 +1,8 @@
 // The lab rotates with the Earth: the inertial rate is ω + Ω_B. Gyros measure it and rotors react
-// to it.
-//
-// No parameters; the Earth's rate in lab axes follows from the latitude of the environment. In body
-// axes Ω_B changes by −ω × Ω_B. Euler's equations for the inertial rate, written for ω, therefore
-// have the additional torque
+// to it. The Earth's rate in lab axes follows from the latitude of the environment. In body axes
+// Ω_B changes by −ω × Ω_B. Euler's equations for the inertial rate, written for ω, therefore have
+// the additional torque
 //   T = I (ω × Ω) − Ω × I ω − (ω + Ω) × I Ω.
-
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::earth_rotation {

@@ -1,15 +1,6 @@
-// The floor vibrates: T = −m r × a_B, where r is the offset of the centre of mass and a the
-// acceleration of the floor.
-//
-// One of
-//   acceleration_m_s2[3] (lab axes), frequency_Hz, phase [rad] (or phase_deg; default 0):
-//     a = a₀ sin(2π f t + φ);
-//   the table spectrum = {frequency_Hz = […], density_m2_s3 = […] (one-sided, equal along all
-//     axes), tones (default 32), seed (default 1)}: see vibration.h;
-//   accelerogram_file: a CSV with t_s, acceleration_x_m_s2, …_y_…, …_z_… in lab axes, zero before
-//     and after; the path is relative to the experiment's file.
-// The last two have scale (default 1). The floor does not rotate.
-
+// The floor vibrates without rotation: T = −m r × a_B, where r is the offset of the centre of mass
+// and a the acceleration of the floor: a sine, a random signal with a spectrum (vibration.h), or a
+// recorded one.
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/motion/vibration.h"
 #include "attitude/environment/time_series.h"

@@ -1,7 +1,4 @@
 // A sinusoidal torque in body axes: T = T₀ sin(2π f t + φ).
-//
-// torque_N_m[3], frequency_Hz, phase [rad] (or phase_deg; default 0).
-
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/motion/vibration.h"
 

@@ -1,6 +1,4 @@
 // A wheel, fan or disk that spins at constant speed: T = −ω × h, where ω is the inertial rate.
-//
-// momentum_N_m_s[3]: angular momentum relative to the body, body axes.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::rotor_momentum {

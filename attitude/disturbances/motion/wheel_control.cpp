@@ -1,16 +1,8 @@
 // Three reaction wheels along the body axes under quaternion feedback.
 //
 // The wheels apply the body torque −k_p sgn(e_w) 2 e_v − k_d (ω − ω_t) that rotates the body to the
-// target attitude, with e = target⁻¹ ⊗ attitude. The torque of each motor is at most
-// largest_torque_N_m, and a motor does not drive its wheel beyond largest_rate_rad_s. The bearings
-// have friction.
-//
-//   gain_N_m_per_rad (k_p), gain_N_m_s (k_d);
-//   target_axis[3], target_angle_deg (default 0: zero attitude),
-//   target_rate_rad_s[3] (body, default 0);
-//   wheel_inertia_kg_m2 (axial, of each; part of the platform's inertia), largest_torque_N_m,
-//   largest_rate_rad_s (of a wheel relative to the body);
-//   viscous_N_m_s (default 0), dry_N_m (default 0): friction of a wheel's bearing.
+// target attitude, with e = target⁻¹ ⊗ attitude. The torque of each motor is limited, and a motor
+// does not drive its wheel beyond its largest rate. The bearings have friction.
 //
 // Source of the feedback law: B. Wie, H. Weiss, A. Arapostathis, J. Guid. Control Dyn. 12 (1989)
 // 375.

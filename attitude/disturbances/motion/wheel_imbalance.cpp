@@ -5,12 +5,6 @@
 // slides, F acts too.
 // Source: R. A. Masterson, D. W. Miller, R. L. Grogan, J. Sound Vib. 249 (2002) 575, the first
 // harmonic. Left out: harmonics of the bearings, modes of the wheel, and U Ω′ of a change of speed.
-//
-// axis[3] (body, any length); static_imbalance_g_cm (U_s, mass times offset from the axis) with
-// position_m[3] (r, from the centre of rotation); dynamic_imbalance_g_cm2 (U_d, product of
-// inertia); static_phase_deg, dynamic_phase_deg (default 0); speed_rad_s, or without it the
-// component along the axis of the speeds of the commands or the recording (wheel_x_rad_s, …),
-// relative to the body.
 #include <array>
 
 #include "attitude/disturbances/kind.h"

@@ -1,9 +1,5 @@
-// Wheels with measured speeds: T = −J (Ω' + ω × Ω), where ω is the inertial rate.
-//
-// inertia_kg_m2: J ≥ 0 of a wheel about its axis; one number for all wheels, or three for those
-// about body x, y and z. The inertia of the body includes the wheels at rest. Their speeds Ω
-// relative to the body are the columns wheel_x_rad_s, wheel_y_rad_s, wheel_z_rad_s of the
-// recording.
+// Wheels with measured speeds: T = −J (Ω' + ω × Ω), where ω is the inertial rate. The inertia of
+// the body includes the wheels at rest.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::wheel_momentum {

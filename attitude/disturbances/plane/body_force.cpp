@@ -1,7 +1,5 @@
 // A force that rotates with a sliding body, F = R f, for example of a leaking thruster or of an air
 // jet on the platform.
-//
-// force_N[2]: f along body x and y.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::body_force {

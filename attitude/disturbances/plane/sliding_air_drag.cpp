@@ -1,6 +1,4 @@
-// Form drag of a body that slides through air: F = −k |v| v.
-//
-// coefficient_kg_m: k ≥ 0, ½ ρ c_d A of a body.
+// Form drag of a body that slides through air: F = −k |v| v with k = ½ ρ c_d A.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::sliding_air_drag {

@@ -1,6 +1,4 @@
 // Viscous drag of a sliding body, for example of an air film: F = −c v.
-//
-// coefficient_kg_s: c ≥ 0.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::sliding_drag {

@@ -1,7 +1,5 @@
-// Dry friction of a sliding body: F = −μ m g v/|v|.
-//
-// coefficient: μ ≥ 0. Below a speed of 1e-4 m/s the friction decreases with the speed, so that a
-// platform at rest creeps with at most about this speed.
+// Dry friction of a sliding body: F = −μ m g v/|v|. Below a speed of 1e-4 m/s the friction
+// decreases with the speed, so that a platform at rest creeps with at most about this speed.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::sliding_friction {

@@ -1,6 +1,4 @@
 // A spring or cable that holds a sliding body: F = f − k r.
-//
-// stiffness_N_per_m: k ≥ 0. pull_N[2]: f, the force at the lab's origin; the equilibrium is at f/k.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::sliding_spring {

@@ -1,7 +1,5 @@
-// A table that is not level: F = −m g (s_x, s_y) on a platform that slides.
-//
-// slope_rad[2]: slope of the table along lab x and y; small. A steady draught or another constant
-// force has the same effect.
+// A table that is not level: F = −m g (s_x, s_y) on a platform that slides. A steady draught or
+// another constant force has the same effect.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::table_slope {

@@ -1,7 +1,5 @@
 // Thrusters that give a smaller fraction of larger commands, on each body axis of a sliding body:
 // the force is F = c / (1 + k |c| / 1 N) instead of the commanded c.
-//
-// loss_at_one_newton: k ≥ 0; the largest thrust is 1/k newton.
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::thrust_saturation {

@@ -1,21 +1,6 @@
 // A measured or fitted torque without a known law. It is a function of one or two variables of the
-// motion, about stated axes, with free coefficients.
-//
-// axes: any of "body" (x, y, z), "lab" (x, y, z), "vertical", "lean" (positive: reduces the tilt),
-//   "rate" (positive: brakes), "rate_by_axis" (positive: brakes; x, y, z), "command", "cross_talk"
-//   (xy, xz, yx, yz, zx, zy).
-// One function of one variable, or two functions, whose terms are multiplied:
-//   yaw_orders: cos nψ and sin nψ for each n;
-//   VARIABLE_exponent, VARIABLE_powers or VARIABLE_knots_UNIT for tilt (deg), rate (rad_s), time
-//     (s), charge (Ah), command (N_m): a power of any exponent, integer powers, a smooth table;
-//   time_constant_s: exp(−t/τ); time_period_s with time_orders: cos and sin of 2π n t/period;
-//   time_span_s with time_cosines: cos(π n t/span).
-// VARIABLE_reference_UNIT: where its powers are 1 (default 0.1 rad, 0.1 rad/s, 100 s, 1 Ah,
-//   1e-4 N m).
-// VARIABLE_range_UNIT [from, to]: beyond it the variable is constant (for a table: beyond its
-//   knots).
-// coefficients_N_m: one for each term of the first function, term of the second function and
-//   component of the axes, the last index fastest.
+// motion, about stated axes, with free coefficients. The terms of two functions are multiplied.
+// shape.cpp reads the function, keys.cpp declares its keys.
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/unknown/law.h"
 

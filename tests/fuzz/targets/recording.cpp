@@ -39,10 +39,10 @@ void write_and_read(const Recording& recording) {
 }
 
 RecordingOptions columns_of_another_program() {
-  return read_recording_options(Settings(std::make_shared<const SettingsNode>(
-      parse_toml("angle_sequence = \"zyx\"\nremove_outliers = false\n"
-                 "columns = {gyro_x_deg_s = \"wx\", q_w = \"qw\", t_ms = \"time\"}",
-                 "fuzz.toml"))));
+  return read_recording_options(
+      Settings(parse_toml("angle_sequence = \"zyx\"\nremove_outliers = false\n"
+                          "columns = {gyro_x_deg_s = \"wx\", q_w = \"qw\", t_ms = \"time\"}",
+                          "fuzz.toml")));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         parse_toml(line == std::string::npos ? text : text.substr(line + 1), "fuzz.toml");
     apply_override(root, text.substr(0, line));
     find_setting(root, text.substr(0, text.find('=')));
-    Settings(std::make_shared<const SettingsNode>(root)).finish();
+    Settings(root).finish();
   });
   return 0;
 }
