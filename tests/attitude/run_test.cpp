@@ -44,20 +44,20 @@ initial_rate_rad_s = [0, 0, 0.05]
 )";
 
 // The run of the experiment with changes as by --set.
-PropagationRun read(const std::vector<std::string>& changes = {},
-                    const std::string& text = experiment_text) {
+PropagationRun run_with(const std::vector<std::string>& changes = {},
+                        const std::string& text = experiment_text) {
   SettingsNode root = parse_toml(text, "run.toml");
   for (const std::string& change : changes) apply_override(root, change);
   return read_propagation(Settings(root));
 }
 
-std::string complaint(const std::vector<std::string>& changes,
-                      const std::string& text = experiment_text) {
-  return refusal_of([&] { read(changes, text); });
+std::string complaint_with(const std::vector<std::string>& changes,
+                           const std::string& text = experiment_text) {
+  return refusal_of([&] { run_with(changes, text); });
 }
 
 TEST(Experiment, OfTheContractIsReadWhole) {
-  const PropagationRun run = read();
+  const PropagationRun run = run_with();
   EXPECT_EQ(run.model.platform.topology, Topology::tabletop);
   EXPECT_EQ(run.model.platform.mass_kg, 8.7);
   EXPECT_EQ(run.model.environment.gravity_lab_m_s2.z(), -9.80665);
@@ -76,7 +76,7 @@ TEST(Experiment, OfTheContractIsReadWhole) {
 }
 
 TEST(Experiment, WrongInputIsOneClearLine) {
-  EXPECT_EQ(complaint({}), "");
+  EXPECT_EQ(complaint_with({}), "");
   const std::pair<std::string, std::string> cases[] = {
       {"platform.inertia_kg_m2=[[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.3]]",
        "platform.inertia_kg_m2: found principal moments 0.1, 0.1, 0.3, expected "
@@ -97,8 +97,8 @@ TEST(Experiment, WrongInputIsOneClearLine) {
       {"propagate.epoch='9999-12-31T23:59:40'",
        "propagate.epoch: found an end after the year 9999"},
   };
-  for (const auto& [change, words] : cases) EXPECT_THAT(complaint({change}), HasSubstr(words));
-  EXPECT_THAT(complaint({}, replaced(experiment_text, "mass_kg", "mass")),
+  for (const auto& [change, words] : cases) EXPECT_THAT(complaint_with({change}), HasSubstr(words));
+  EXPECT_THAT(complaint_with({}, replaced(experiment_text, "mass_kg", "mass")),
               HasSubstr("platform.mass: found a key without a unit of mass, expected the key "
                         "mass_kg"));
 }
@@ -107,10 +107,10 @@ TEST(Experiment, BeginsAsItsBearingsAllow) {
   const auto about = [](const std::string& axis, const std::string& rate_rad_s,
                         const std::string& tilt_deg) {
     // A tilt towards y is a rotation about x.
-    return complaint({"platform.topology=one_axis", "platform.axis=" + axis,
-                      "propagate.initial_rate_rad_s=" + rate_rad_s,
-                      "propagate.initial_tilt_deg=" + tilt_deg,
-                      "propagate.initial_heading_deg=90"});
+    return complaint_with({"platform.topology=one_axis", "platform.axis=" + axis,
+                           "propagate.initial_rate_rad_s=" + rate_rad_s,
+                           "propagate.initial_tilt_deg=" + tilt_deg,
+                           "propagate.initial_heading_deg=90"});
   };
   EXPECT_EQ(about("z", "[0, 0, 0.05]", "0"), "");
   EXPECT_EQ(about("x", "[0.05, 0, 0]", "10"), "");
@@ -125,7 +125,7 @@ TEST(Experiment, BeginsAtTheStatedHeadingAndYaw) {
                     yaw = "propagate.initial_yaw_deg=75";
   const auto begins = [&](const std::string& tilt_deg, std::vector<std::string> changes) {
     changes.push_back("propagate.initial_tilt_deg=" + tilt_deg);
-    return read(changes).initial;
+    return run_with(changes).initial;
   };
   EXPECT_NEAR(heading_rad(begins("20", {heading})), -130 * degree_rad, 1e-12);
   const PlatformState both = begins("20", {heading, yaw});
@@ -138,24 +138,24 @@ TEST(Experiment, BeginsAtTheStatedHeadingAndYaw) {
   const Quat upright = begins("0", {heading, yaw}).lab_from_body;
   EXPECT_LT(upright.angularDistance(Quat(Eigen::AngleAxisd(75 * degree_rad, Vec3::UnitZ()))),
             1e-12);
-  EXPECT_THAT(complaint({"propagate.initial_tilt_deg=90", "propagate.initial_yaw_deg=10"}),
+  EXPECT_THAT(complaint_with({"propagate.initial_tilt_deg=90", "propagate.initial_yaw_deg=10"}),
               HasSubstr("propagate.initial_yaw_deg"));
 }
 
 // θ = θ₀ cos √(k/J) t of a twisted line from a turn and 60 degrees, for a third of a period.
 TEST(Experiment, BeginsAfterWholeTurns) {
   PropagationRun run =
-      read({"platform.topology=one_axis", "platform.inertia_kg_m2=0.05",
-            "disturbance=[{kind='tether', stiffness_N_m_per_rad=0.02}]",
-            "propagate.initial_tilt_deg=0", "propagate.initial_rate_rad_s=[0, 0, 0]",
-            "propagate.initial_yaw_deg=60", "propagate.initial_turns=1",
-            "propagate.duration_s=" + toml(2.0 * pi / 3.0 * std::sqrt(0.05 / 0.02))});
+      run_with({"platform.topology=one_axis", "platform.inertia_kg_m2=0.05",
+                "disturbance=[{kind='tether', stiffness_N_m_per_rad=0.02}]",
+                "propagate.initial_tilt_deg=0", "propagate.initial_rate_rad_s=[0, 0, 0]",
+                "propagate.initial_yaw_deg=60", "propagate.initial_turns=1",
+                "propagate.duration_s=" + toml(2.0 * pi / 3.0 * std::sqrt(0.05 / 0.02))});
   run.options.tolerance = 1e-11;
   const PlatformState end = propagate(run).states.back();
   const double angle_rad = 420.0 * degree_rad * std::cos(std::sqrt(0.02 / 0.05) * end.time_s);
   EXPECT_LT(angle_rad, -pi);
   EXPECT_NEAR(std::remainder(yaw_rad(end) - angle_rad, 2.0 * pi), 0.0, 1e-7);
-  EXPECT_THAT(complaint({"propagate.initial_turns=1"}),
+  EXPECT_THAT(complaint_with({"propagate.initial_turns=1"}),
               HasSubstr("propagate.initial_turns: found a platform with several axes"));
 }
 
@@ -163,7 +163,7 @@ TEST(Experiment, BeginsAfterWholeTurns) {
 // that is 10 MB.
 TEST(Experiment, LongRunsHaveFewerRows) {
   const auto rate = [](double duration_s) {
-    return read({"propagate.duration_s=" + toml(duration_s)}).output_rate_Hz;
+    return run_with({"propagate.duration_s=" + toml(duration_s)}).output_rate_Hz;
   };
   EXPECT_DOUBLE_EQ(rate(600.0), 10.0);
   EXPECT_DOUBLE_EQ(rate(4500.0), 10.0);
@@ -176,7 +176,7 @@ TEST(Experiment, LongRunsHaveFewerRows) {
 }
 
 TEST(Run, GivesHistoryPlotsAndRecording) {
-  const PropagationResult result = propagate(read());
+  const PropagationResult result = propagate(run_with());
   EXPECT_EQ(result.recording.rows(), 301u);
   EXPECT_NE(result.recording.find("gyro_z_rad_s"), nullptr);
   EXPECT_EQ(result.recording.find("command_x_N_m"), nullptr);
@@ -204,7 +204,7 @@ TEST(Run, SpinDecaysAsItsClosedForm) {
   std::string text = experiment_text;
   text.erase(text.find("[sensors.camera]"),
              text.find("[propagate]") - text.find("[sensors.camera]"));
-  const PropagationResult result = propagate(read(
+  const PropagationResult result = propagate(run_with(
       {"disturbance={kind='bearing_drag', coefficient_N_m_s=2e-3}", "propagate.initial_tilt_deg=0"},
       text));
   const Table& history = result.product.tables.front();
@@ -217,8 +217,8 @@ TEST(Run, SpinDecaysAsItsClosedForm) {
 }
 
 TEST(Run, EndsAtTheTiltStop) {
-  const PropagationResult result =
-      propagate(read({"platform.tilt_limit_deg=12", "propagate.initial_rate_rad_s=[0, 0.05, 0]"}));
+  const PropagationResult result = propagate(
+      run_with({"platform.tilt_limit_deg=12", "propagate.initial_rate_rad_s=[0, 0.05, 0]"}));
   ASSERT_EQ(result.events.size(), 1u);
   EXPECT_EQ(result.events[0].name, "tilt_stop");
   EXPECT_GT(tilt_rad(result.states.back()), 11.5 * degree_rad);

@@ -170,16 +170,16 @@ TEST(Sticking, EndsWhereTheRateHardlyChangesAtItsZero) {
   model.platform.axis = Vec3::UnitX();
   model.platform.mass_kg = 1.0;
   model.platform.inertia_kg_m2 = Mat3::Identity();
-  model = with(model, "static_unbalance", {{"offset_m", numbers({0.0, -0.900448, -3.0716416})}});
+  model = with(model, "static_unbalance", "offset_m = [0, -0.900448, -3.0716416]");
   const auto add = [&](const std::string& kind, const std::string& key, double value) {
-    model = with(model, kind, {{key, node(0.0)}});
+    model = with(model, kind, key + " = 0");
     model.disturbances.back().parameters[0].value = value;
   };
   add("bearing_drag", "coefficient_N_m_s", 238.43128548652123);
   add("dry_friction", "torque_N_m", -40.660917537255678);
   add("air_friction", "coefficient", -232.46535626843632);
   add("air_pressure_drag", "coefficient_N_m_s2", 58.354484251557658);
-  model = with(model, "room_draft", {{"torque_lab_N_m", numbers({9.5366790563112289, 0, 0})}});
+  model = with(model, "room_draft", "torque_lab_N_m = [9.5366790563112289, 0, 0]");
   const Dynamics dynamics(model);
   const double times_s[] = {24.491};
   const Trajectory t = propagate(dynamics,
