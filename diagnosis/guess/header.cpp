@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 
-#include "attitude/recordings/text_lines.h"
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
 
@@ -386,8 +385,7 @@ bool is_bare_unit(std::string_view text) {
 }  // namespace
 
 HeaderCell read_header_cell(const std::string& in_file) {
-  const std::string whole = header_cell_text(in_file);
-  const std::string_view text = trimmed(whole);
+  const std::string_view text = trimmed(in_file);
   HeaderCell cell;
   cell.is_between_bars = text.starts_with('|') && text.find('|', 1) != std::string_view::npos;
   if (is_bare_unit(text)) {

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "attitude/recordings/aem.h"
-#include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/settings/settings.h"
@@ -337,8 +336,7 @@ void refuse_wrong_units(const std::vector<ReadColumn>& columns, const InputLocat
   for (const ReadColumn& c : columns) {
     if (c.wrong_unit.empty() || is_taken(columns, c.stem)) continue;
     if (begins(c.stem, {"accel_", "mag_"}) || (turns && is_one_of(c.stem, {"x", "y"}))) continue;
-    throw InputError(where, header_cell_text(c.guess.in_file),
-                     "the unit " + in_quotes(c.wrong_unit),
+    throw InputError(where, c.guess.in_file, "the unit " + in_quotes(c.wrong_unit),
                      units_for(c.dimension) +
                          ": convert the column, or rename it if it is another "
                          "quantity");
@@ -363,54 +361,14 @@ bool has_motion(const std::vector<GuessedColumn>& columns) {
   return std::ranges::any_of(columns, [](const GuessedColumn& c) { return is_motion(c.channel); });
 }
 
-GuessedCurve guess_curve(const std::filesystem::path& path, const RecordingOptions& reading) {
-  GuessedCurve curve;
-  std::vector<size_t> voltages, currents;
-  if (is_aem(path)) return curve;
-  const FileHead head = head_of(path, reading);
-  std::vector<HeaderCell> cells;
-  for (size_t place = 0; place < head.header.size(); ++place) {
-    cells.push_back(cell_of(head, place));
-    const HeaderCell& cell = cells.back();
-    const Words words{cell.words.empty() ? words_of_header(head.header[place]) : cell.words};
-    if (is_of_another_kind(words)) continue;
-    const std::string dimension = cell.unit ? cell.unit->dimension : "";
-    const bool no_unit = !cell.unit && cell.unit_text.empty();
-    const bool is_voltage =
-        words.any_has({"voltage", "spannung", "voltaje", "tension", "tensao"}) ||
-        words.any_is({"volt", "volts", "u", "v", "vpv", "upv", "vmod", "umod"});
-    const bool is_current =
-        words.any_has({"current", "strom", "courant", "corriente", "corrente"}) ||
-        words.any_is({"amp", "amps", "ampere", "i", "j", "ipv", "imod"});
-    if (dimension == "voltage" || (is_voltage && !is_current && no_unit)) voltages.push_back(place);
-    if (dimension == "current" || dimension == "current density" ||
-        (is_current && !is_voltage && no_unit)) {
-      currents.push_back(place);
-    }
-  }
-  if (voltages.size() != 1 || currents.size() != 1) return curve;
-  const HeaderCell &voltage = cells[voltages[0]], &current = cells[currents[0]];
-  curve.columns["voltage_" + (voltage.unit ? voltage.unit->suffix : "V")] =
-      header_cell_text(head.header[voltages[0]]);
-  const bool is_density = current.unit ? current.unit->dimension == "current density"
-                                       : Words{current.words}.any_is({"j"});
-  std::string unit = current.unit ? current.unit->suffix : "A";
-  // Sunlight generates at most 0.07 A/cm² in one junction, so larger numbers are in mA/cm².
-  if (is_density && !current.unit) unit = largest_in(head, currents[0]) > 0.5 ? "mA" : "A";
-  curve.columns["current_" + unit] = header_cell_text(head.header[currents[0]]);
-  if (is_density) {
-    curve.because =
-        "a current density is read as the current of a unit of area (1 cm², "
-        "or 1 m² if that is its unit)";
-    if (!current.unit) curve.because += ", in " + unit + "/cm² by its size";
-    curve.because += ": multiply currents by the area of the cell.";
-  }
-  return curve;
+bool has_time(const std::vector<GuessedColumn>& columns) {
+  return std::ranges::any_of(columns,
+                             [](const GuessedColumn& c) { return c.channel.starts_with("t_"); });
 }
 
 std::string names_in(const std::filesystem::path& path, const RecordingOptions& reading) {
   return joined_text(head_of(path, reading).header, ", ",
-                     [&](const std::string& name) { return in_quotes(header_cell_text(name)); });
+                     [&](const std::string& name) { return in_quotes(name); });
 }
 
 }  // namespace photorque

@@ -37,6 +37,11 @@ void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
       task.notes.push_back(name + ": left out " + std::to_string(count) + " " + what);
     };
     note(curve.unread, "rows without a reading");
+    if (curve.is_stacked && k == 0) {
+      task.notes.push_back(file.filename().string() +
+                           ": the voltage returns in one step; read as " +
+                           std::to_string(curves.size()) + " curves, one below the other");
+    }
     if (curve.is_reversed) {
       task.notes.push_back(name + ": currents are negative in light; counted the other way round");
     }
