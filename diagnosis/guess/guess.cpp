@@ -86,7 +86,7 @@ struct Cells {
 // certain numbers of cells; modules of 36, 60, 72 or 96 are by far the most frequent. Up to 1.25 V
 // a single cell of another material (a perovskite, GaAs) is more frequent than two of silicon.
 Cells cells_in_series(double open_V, std::optional<double> temperature_K) {
-  constexpr double usual_V = 0.63, per_K = -2.2e-3, relative_spread = 0.1, rare = 2.0,
+  constexpr double usual_V = 0.63, per_K = -2.2e-3, relative_spread = 0.1, rare = 2.2,
                    most_of_one_V = 1.25;
   constexpr int few[] = {2,  3,  4,  6,  8,  9,  10, 12, 18,  20,  22,  24, 32,
                          33, 40, 44, 48, 54, 66, 78, 88, 104, 108, 132, 156};

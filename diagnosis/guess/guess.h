@@ -32,6 +32,10 @@ void guess_module(TomlDocument& experiment, const std::vector<std::filesystem::p
 // Writes header and rate into [recording] if they are stated.
 void add_reading(TomlDocument& experiment, const RecordingOptions& reading);
 
+// What to do with the counts of an encoder.
+inline constexpr const char* counts_of_encoder =
+    "an angle: divide the counts of an encoder by those of a turn, and name the column angle_rev";
+
 struct GuessedColumn {
   std::string in_file;  // as in the header
   std::string channel;  // "gyro_x_deg_s", with the unit of the file; empty: unknown

@@ -14,6 +14,7 @@
 #include "core/text/format.h"
 #include "diagnosis/guess/file_head.h"
 #include "diagnosis/guess/guess.h"
+#include "diagnosis/guess/header.h"
 #include "diagnosis/guess/places.h"
 
 namespace photorque {
@@ -454,6 +455,14 @@ void require_motion(const fs::path& path, const std::vector<GuessedColumn>& colu
                    "a quantity with its unit, such as \"angle (deg)\", rate_rpm, "
                    "gyro_x_rad_s, or x_m and y_m") +
                of_light;
+  }
+  // Counts of an encoder, or of another instrument.
+  const auto in_counts = std::ranges::find_if(columns, [](const GuessedColumn& c) {
+    const auto unit = read_header_cell(c.in_file).unit;
+    return unit && unit->dimension == "angle" && unit->suffix.empty();
+  });
+  if (!has_motion(columns) && in_counts != columns.end()) {
+    throw InputError({path.string()}, in_counts->in_file, "counts", counts_of_encoder);
   }
   throw InputError({path.string()}, "header", found + names_in(path, reading), expected);
 }

@@ -328,6 +328,23 @@ void read_counter(const FileHead& head, std::vector<ReadColumn>& columns) {
   }
 }
 
+// Large whole numbers of an encoder without a unit are counts.
+void refuse_counts(const FileHead& head, const std::vector<ReadColumn>& columns,
+                   const InputLocation& where) {
+  constexpr double several_turns = 20.0;  // rad
+  for (size_t k = 0; k < columns.size(); ++k) {
+    const Words words{words_of_header(columns[k].guess.in_file)};
+    const bool is_whole = std::ranges::all_of(head.rows, [k](const auto& row) {
+      return std::isnan(row[k]) || row[k] == std::round(row[k]);
+    });
+    if (columns[k].stem == "angle" && !columns[k].guess.is_sure && is_whole &&
+        largest_in(head, k) > several_turns && words.has_word_with_prefix({"encod", "count"})) {
+      throw InputError(where, columns[k].guess.in_file, "whole numbers without a unit",
+                       counts_of_encoder);
+    }
+  }
+}
+
 // A reading in an unknown unit would be of a wrong size, and the motion without it another.
 void refuse_wrong_units(const std::vector<ReadColumn>& columns, const InputLocation& where) {
   const bool turns = std::ranges::any_of(columns, [](const ReadColumn& c) {
@@ -352,6 +369,7 @@ std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path,
   std::vector<ReadColumn> columns = read_columns(head);
   if (!is_taken(columns, "t")) read_counter(head, columns);
   refuse_wrong_units(columns, {path.string(), head.line});
+  refuse_counts(head, columns, {path.string(), head.line});
   std::vector<GuessedColumn> all;
   for (const ReadColumn& column : columns) all.push_back(column.guess);
   return all;

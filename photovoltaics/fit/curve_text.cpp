@@ -211,6 +211,7 @@ class Reader {
     if (!find_header()) throw without_header();
     bool is_first = true;
     for (std::string_view line; lines_.next(line); is_first = false) {
+      if (is_first) header_.separator = separator_of_rows(line);
       const std::vector<std::string_view> cells = split(line, header_.separator);
       if (is_first && states_units(cells)) continue;
       if (is_first && header_.reading) assign_instrument(cells);
@@ -310,9 +311,23 @@ class Reader {
       std::optional<Unit> unit = name.unit;
       if (words.size() > 1 && !unit) unit = unit_named(name.column, lower_case(words[1]));
       if (!unit && name.column == irradiance && words.size() == 1) unit = Unit{"", 1.0, 0.0};
+      if (number && !unit) without_unit_ = line;
       if (!number || !unit) continue;
       stated_[name.column] = (*number + unit->offset) * unit->to_SI;
     }
+  }
+
+  // The separator of the first row, which may differ from that of a header that was added by hand.
+  char separator_of_rows(std::string_view row) const {
+    const size_t own = split(row, header_.separator).size();
+    for (const char other : {'\t', ';', ' '}) {
+      const size_t cells = split(row, other).size();
+      if (own < header_.cells ? cells >= header_.cells
+                              : own > header_.cells && cells == header_.cells) {
+        return other;
+      }
+    }
+    return header_.separator;
   }
 
   // Determines which of reading and source is the voltage, and their units, from the first row.
@@ -459,6 +474,7 @@ class Reader {
     };
     curve.irradiance_W_m2 = mean(irradiance);
     curve.temperature_K = mean(temperature);
+    curve.without_unit = without_unit_;
     curve.is_density = header_.unit[current].name.find('/') != std::string_view::npos;
     curve.sweep.voltage_V = std::move(readings[voltage]);
     curve.sweep.current_A = std::move(readings[current]);
@@ -495,6 +511,7 @@ class Reader {
   std::map<double, Rows> rows_;
   std::vector<double> order_;
   std::array<std::optional<double>, columns> stated_;  // above the header
+  std::string without_unit_;                           // above the header
   std::optional<InputError> after_readings_;           // the first line without a voltage
   size_t lines_after_ = 0;
 };

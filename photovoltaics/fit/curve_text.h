@@ -22,6 +22,7 @@ struct MeasuredCurve {
   bool is_density = false;   // its currents are those of 1 cm²
   bool is_stacked = false;   // another curve stands above or below it in the same rows
   std::string stated;        // irradiance and temperature by the lines above the header, in words
+  std::string without_unit;  // a line above the header with a temperature whose unit is missing
   // Rows without a number: empty, "NaN", "OL", an instrument's overflow; and lines below the last
   // reading.
   size_t unread = 0;

@@ -329,7 +329,8 @@ TEST_F(Headers, OfCurvesThatAMeterMade) {
   const auto refusal = [](const std::string& text) {
     return refusal_of([&] { guess_experiment({test_file("few.csv", text)}, testing::TempDir()); });
   };
-  EXPECT_THAT(refusal("V,I\n0,5\n10,4\n20,0\n"), HasSubstr("at least 12 points"));
+  EXPECT_THAT(refusal("V,I\n0,5\n5,4.5\n10,NaN\n20,0\n"),
+              AllOf(HasSubstr("3 usable points in 4 rows"), HasSubstr("at least 12 points")));
   // A resistor of 2 ohm, and a tracker that goes about one point of a module.
   std::string resistor = "V,I\n", log = resistor;
   for (int i = 0; i < 40; ++i) {
@@ -365,7 +366,7 @@ TEST_F(Headers, NumbersOfCellsAreThoseThatAreMade) {
               AllOf(HasSubstr("modules of 72 in a string"), HasSubstr("at 0.6"),
                     Not(HasSubstr("Silicon in sunlight"))));
   // Perovskite and organic cells.
-  EXPECT_THAT(guess_of(1.2, ""), AllOf(HasSubstr(cells(1)), HasSubstr("the material")));
+  EXPECT_THAT(guess_of(1.2, ""), AllOf(HasSubstr(cells(1)), HasSubstr("Silicon in sunlight")));
   EXPECT_THAT(guess_of(0.2, ""), HasSubstr("Silicon in sunlight"));
 }
 
@@ -554,6 +555,19 @@ TEST_F(Headers, OfTwoBodiesAreRefusedWithACommandForOne) {
                 guess_columns(test_file("counts.csv", "t (s),encoder (counts)\n0,1\n1,2\n"));
               }),
               AllOf(HasSubstr("the unit \"counts\""), HasSubstr("rev (the counts of an encoder")));
+}
+
+TEST_F(Headers, CountsOfAnEncoderAreNoRadians) {
+  std::string whole = "Time,Encoder\n", named = "time(ms),position(counts)\n";
+  for (int i = 0; i < 40; ++i) {
+    whole += printed("%.2f,%d\n", 0.02 * i, 68 * i);
+    named += printed("%d,%d\n", 20 * i, 200 - 9 * i);
+  }
+  for (const std::string& text : {whole, named}) {
+    EXPECT_THAT(
+        refusal_of([&] { guess_experiment({test_file("encoder_counts.csv", text)}, "."); }),
+        HasSubstr("divide the counts of an encoder by those of a turn, and name the column"));
+  }
 }
 
 TEST_F(Headers, OfFewRowsAreNamedInTheRefusal) {

@@ -206,6 +206,9 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
            {"Voltage,J\n0.1,500\n0.2,400\n"},
            {"Vdark,Jdark,Vlight,Jlight\n9,9,0.1,0.5\n9,9,0.2,0.4\n"},
            {"V_oc (V),Volts,Amps\n9,0.1,0.5\n9,0.2,0.4\n"},
+           // A header that was added by hand above rows with other separators.
+           {"voltage_V,current_A\n0.1\t0.5\t25\n0.2\t0.4\t25\n"},
+           {"voltage_V,current_A\n0,1;0,5\n0,2;0,4\n"},
            {"Voltage (V),Current (A),Monitor (V)\n0.1,0.5,9\n0.2,0.4,9\n"},
            {"Potential (V),J (mA cm⁻²)\n0.1,500\n0.2,400\n"},
            {"voltage_mV,current_mA\n100,500\n150,NaN\n200,400\n250,9.91E37\n"},
@@ -273,6 +276,7 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
     EXPECT_THAT(message(points), testing::HasSubstr("a header that names a voltage"));
   }
   EXPECT_THAT(message("Vdark,Jdark\n0.1,0.5\n"), testing::HasSubstr("of a device in light"));
+  EXPECT_EQ(curves_in("% T=39.8\nV,I\n0.1,0.5\n", "x")[0].without_unit, "T=39.8");
   EXPECT_THAT(message("V,I\n0.1,a\n"), testing::HasSubstr("curve.csv:2"));
   EXPECT_THAT(message("V,I,temperature\n0.1,0.5,25\n"), testing::HasSubstr("K or °C"));
 }
