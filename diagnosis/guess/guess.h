@@ -32,7 +32,7 @@ void guess_module(TomlDocument& experiment, const std::vector<std::filesystem::p
 // Writes header and rate into [recording] if they are stated.
 void add_reading(TomlDocument& experiment, const RecordingOptions& reading);
 
-// What to do with the counts of an encoder.
+// The remedy for counts of an encoder, in a message.
 inline constexpr const char* counts_of_encoder =
     "an angle: divide the counts of an encoder by those of a turn, and name the column angle_rev";
 

@@ -241,9 +241,7 @@ std::optional<HeaderUnit> unit_written(std::string_view text) {
       {{"V", "voltage"}, {"volt", "volts", "voltios"}},
       {{"mV", "voltage"}, {"millivolt", "millivolts"}},
       {{"A", "current"}, {"amp", "amps", "ampere", "amperes", "amperios"}},
-      {{"mA", "current"}, {"milliampere", "milliamps"}},
-      {{"mA", "current density"}, {"ma/cm2", "ma cm-2", "macm-2"}},
-      {{"A", "current density"}, {"a/cm2", "a cm-2", "acm-2", "a/m2", "a m-2"}}};
+      {{"mA", "current"}, {"milliampere", "milliamps"}}};
   text = trimmed(text);
   if (text.starts_with("in ")) text.remove_prefix(3);  // "Voltage (in V)"
   const std::string as_written(trimmed(ascii_of(text, true))), plain = plain_unit(text);

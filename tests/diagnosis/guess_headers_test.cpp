@@ -370,7 +370,7 @@ TEST_F(Headers, NumbersOfCellsAreThoseThatAreMade) {
   EXPECT_THAT(guess_of(0.2, ""), HasSubstr("Silicon in sunlight"));
 }
 
-// What a file states above its header: curves of ctib/BuildingSystems, and a PV-KLA tester, whose
+// Conditions in the lines above a header: curves of ctib/BuildingSystems, and a PV-KLA tester, whose
 // text is Latin-1 and has tables of other numbers above the curve.
 TEST_F(Headers, ConditionsOfACurveAreThoseOfItsFile) {
   std::string rows;
@@ -410,6 +410,14 @@ TEST_F(Headers, MayBeNumberedLines) {
               AllOf(HasSubstr("cells_in_series = 1\n"), HasSubstr("temperature_K = 298.18")));
   const Settings root(std::make_shared<const SettingsNode>(parse_toml(guessed, "guess.toml")));
   EXPECT_EQ(read_module(root, testing::TempDir()).references.at(0).rows(), 41u);
+  // Such columns in a table, of which the voltage and the current are mapped.
+  std::ranges::replace(rows, '\t', ',');
+  EXPECT_THAT(guess_experiment({test_file("loana.csv",
+                                          "Voltage (V),Current (A),Temperature (°C),"
+                                          "Monitor (V)\n" +
+                                              rows)},
+                               testing::TempDir()),
+              AllOf(HasSubstr("voltage_V = \"Voltage (V)\""), HasSubstr("temperature_K = 298.18")));
   std::string turning;
   for (int i = 0; i < 30; ++i) turning += printed("%.1f;%d\n", 0.1 * i, 1000 - i * i);
   EXPECT_THAT(channels_in(test_file("turning.txt",
@@ -433,7 +441,7 @@ TEST_F(Headers, RowsWithATextAreNoHeader) {
               testing::ElementsAre("", "t_s", "angle_deg"));
 }
 
-TEST_F(Headers, OfNeitherMotionNorACurveSayWhatEachNeeds) {
+TEST_F(Headers, OfNeitherMotionNorACurveStateTheNeededColumns) {
   for (const char* header : {"lux;voltage (V)", "R (cm);signal"}) {
     EXPECT_THAT(
         refusal_of([&] { guess_experiment({table(header)}, "."); }),
@@ -507,6 +515,7 @@ TEST_F(Headers, OfDistancesAndSpeedsBesideATime) {
   };
   EXPECT_THAT(names("t,s,v,a"), testing::ElementsAre("t_s", "x_m", "", ""));
   EXPECT_THAT(names("Time,Position,Velocity,a"), testing::ElementsAre("t_s", "x_m", "", ""));
+  EXPECT_THAT(names("time,height,ignored,a"), testing::ElementsAre("t_s", "x_m", "", ""));
   EXPECT_THAT(names("s,x,y,a"), testing::ElementsAre("t_s", "x_m", "y_m", ""));
 }
 

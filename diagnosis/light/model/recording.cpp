@@ -138,6 +138,17 @@ struct Beginning {
   std::vector<std::string> missing;  // without a header: columns that the nearest line lacks
 };
 
+// Whether a header of foreign names becomes that of a curve by the names that are mapped. The
+// reader of curves knows foreign names of its irradiance and temperature, but no attitude.
+bool is_foreign_curve(std::string_view line, const std::map<std::string, std::string>& columns) {
+  const bool has_attitude = std::ranges::any_of(columns, [](const auto& column) {
+    return column.first.starts_with("tilt") || column.first.starts_with("heading") ||
+           column.first.starts_with("q_");
+  });
+  return LightHeader(line, columns).kind() == LightRecording::Kind::sweep && !has_attitude &&
+         !LightHeader(line, {}).kind() && is_curve_header(line, columns);
+}
+
 // Preambles may lack comment marks: the header is the first line that identifies a kind of
 // recording.
 Beginning find_header(TextLines& lines, const std::map<std::string, std::string>& columns) {
@@ -146,6 +157,7 @@ Beginning find_header(TextLines& lines, const std::map<std::string, std::string>
   Beginning unknown;
   for (int i = 0; i < most && next_line(lines, line); ++i) {
     LightHeader header(line, columns);
+    if (is_foreign_curve(line, columns)) return {{}, true, curve_header_cells(line), {}};
     if (header.kind()) return {header, false, header.written(), {}};
     if (is_curve_header(line, columns)) return {{}, true, curve_header_cells(line), {}};
     if (unknown.missing.empty()) unknown.missing = header.missing();
