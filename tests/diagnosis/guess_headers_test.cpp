@@ -370,8 +370,8 @@ TEST_F(Headers, NumbersOfCellsAreThoseThatAreMade) {
   EXPECT_THAT(guess_of(0.2, ""), HasSubstr("Silicon in sunlight"));
 }
 
-// Conditions in the lines above a header: curves of ctib/BuildingSystems, and a PV-KLA tester, whose
-// text is Latin-1 and has tables of other numbers above the curve.
+// Conditions in the lines above a header: curves of ctib/BuildingSystems, and a PV-KLA tester,
+// whose text is Latin-1 and has tables of other numbers above the curve.
 TEST_F(Headers, ConditionsOfACurveAreThoseOfItsFile) {
   std::string rows;
   for (int i = 0; i <= 40; ++i) {

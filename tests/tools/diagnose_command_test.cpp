@@ -85,8 +85,8 @@ TEST_F(DiagnoseCommand, FiguresAreWrittenInTheFormatsThatAreAskedFor) {
 
 // A voltage and a current beside the motion do not make the recording one of light.
 TEST_F(DiagnoseCommand, ALogWithVoltageAndCurrentIsOfMotion) {
-  const std::string log = write(
-      "log.csv", with_columns(file_text(recording_), ",voltage_V,current_A", ",12,0.5"));
+  const std::string log =
+      write("log.csv", with_columns(file_text(recording_), ",voltage_V,current_A", ",12,0.5"));
   succeed("diagnose " + experiment_ + " --recording " + log + " --quiet --out " + at("log"));
   EXPECT_THAT(file_text(at("log/diagnosis.json")), HasSubstr("gyro_z_rad_s"));
 }
