@@ -43,6 +43,20 @@ constexpr NumbersKey pivot("pivot_m", {},
 constexpr TableKey recording("recording", "how files of recordings are read");
 }  // namespace recording_key
 
+// Throws InputError for a channel whose column states another unit of its quantity in brackets.
+void require_unit(const Settings& columns, const std::string& channel, const std::string& written) {
+  const size_t open = written.find_last_of("(["), close = written.find_last_of(")]");
+  if (open == written.npos || close == written.npos || close < open) return;
+  std::string inside = written.substr(open + 1, close - open - 1);
+  std::ranges::replace(inside, '/', '_');
+  const KeyUnit wanted = unit_of_key(channel), stated = unit_of_key("x_" + inside);
+  if (stated.stem != "x" || stated.dimension != wanted.dimension || stated.to_SI == wanted.to_SI) {
+    return;
+  }
+  throw columns.error(channel, in_quotes(written) + ", a column in " + stated.unit,
+                      wanted.stem + "_" + stated.unit + " = " + in_quotes(written));
+}
+
 }  // namespace
 
 Key recording_table() {
@@ -57,6 +71,7 @@ RecordingOptions read_recording_options(const Settings& settings) {
     const Settings columns = settings.table(recording_key::columns);
     for (const std::string& channel : columns.keys()) {
       options.columns[channel] = columns.text(channel);
+      require_unit(columns, channel, options.columns[channel]);
     }
   }
   if (settings.has(recording_key::header)) options.header = settings.get(recording_key::header);

@@ -170,7 +170,7 @@ class RecordingReader {
     time_column_.reset();
     bool names_channel = false;
     for (size_t i = 0; i < cells_.size(); ++i) {
-      columns_.push_back(column_named(header_cell_text(cells_[i]), options_));
+      columns_.push_back(column_named(std::string(cells_[i]), options_));
       const std::string& name = columns_.back().name;
       names_channel = names_channel ||
                       std::ranges::any_of(known_channels(),

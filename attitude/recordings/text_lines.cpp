@@ -17,6 +17,26 @@ constexpr size_t chunk = 1 << 16;
 constexpr size_t max_line_length = 1 << 20;
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // some programs start UTF-8 with it
 
+// A line as UTF-8: if it is not valid UTF-8, its bytes are read as Latin-1, as in "Winkel [\xb0]".
+std::string in_utf8(std::string_view line) {
+  std::string latin;
+  int following = 0;  // remaining bytes of a UTF-8 character
+  bool is_utf8 = true;
+  for (const char c : line) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool continues = (byte & 0xC0U) == 0x80U;
+    is_utf8 = is_utf8 && continues == (following > 0) && byte < 0xF8;
+    following = continues ? following - 1 : byte < 0xC0 ? 0 : byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : 3;
+    if (byte < 0x80) {
+      latin += c;
+    } else {
+      latin += static_cast<char>(0xC0U | byte >> 6U);
+      latin += static_cast<char>(0x80U | (byte & 0x3FU));
+    }
+  }
+  return is_utf8 && following == 0 ? std::string(line) : latin;
+}
+
 }  // namespace
 
 struct TextLines::File {
@@ -104,26 +124,12 @@ bool TextLines::next(std::string_view& line) {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   begin_ = last ? end : end + 1;
   if (++number_ == 1 && line.starts_with(byte_order_mark)) line.remove_prefix(3);
-  return true;
-}
-
-std::string header_cell_text(std::string_view cell) {
-  std::string latin;
-  int following = 0;  // remaining bytes of a UTF-8 character
-  bool is_utf8 = true;
-  for (const char c : cell) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool continues = (byte & 0xC0U) == 0x80U;
-    is_utf8 = is_utf8 && continues == (following > 0) && byte < 0xF8;
-    following = continues ? following - 1 : byte < 0xC0 ? 0 : byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : 3;
-    if (byte < 0x80) {
-      latin += c;
-    } else {
-      latin += static_cast<char>(0xC0U | byte >> 6U);
-      latin += static_cast<char>(0x80U | (byte & 0x3FU));
-    }
+  if (std::ranges::any_of(line,
+                          [](char c) { return (static_cast<unsigned char>(c) & 0x80U) != 0; })) {
+    utf8_ = in_utf8(line);
+    line = utf8_;
   }
-  return is_utf8 && following == 0 ? std::string(cell) : latin;
+  return true;
 }
 
 std::string whole_text(const std::filesystem::path& path, const std::vector<std::string>& header) {

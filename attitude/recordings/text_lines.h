@@ -24,8 +24,8 @@ class TextLines {
   TextLines& operator=(const TextLines&) = delete;
 
   // The next line without its end ("\n", "\r\n") and without a byte-order mark; false at the end of
-  // the file. The view is valid until the next call. InputError when the file is damaged or a
-  // line is longer than a megabyte.
+  // the file. A line that is not valid UTF-8 is read as Latin-1. The view is valid until the next
+  // call. InputError when the file is damaged or a line is longer than a megabyte.
   bool next(std::string_view& line);
   // 1-based number of the line that next() returned last.
   int64_t number() const { return number_; }
@@ -39,7 +39,7 @@ class TextLines {
   std::unique_ptr<File> file_;
   std::vector<std::string> header_;
   std::string header_line_;  // until next() returns it
-  std::string buffer_;
+  std::string buffer_, utf8_;
   size_t begin_ = 0;
   bool at_end_ = false;
   int64_t number_ = 0;
@@ -48,10 +48,6 @@ class TextLines {
 // All lines of a file, each with "\n". `header` and InputError as for TextLines.
 std::string whole_text(const std::filesystem::path& path,
                        const std::vector<std::string>& header = {});
-
-// A cell of a header as UTF-8. If it is not valid UTF-8, its bytes are read as Latin-1, as in
-// "Winkel [\xb0]".
-std::string header_cell_text(std::string_view cell);
 
 // The number of a cell. A comma in it is a decimal comma unless commas separate cells. NaN for an
 // empty cell and for the words nan, NaN and NA; nothing for other texts.

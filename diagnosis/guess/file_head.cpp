@@ -11,6 +11,7 @@
 #include "core/text/format.h"
 #include "core/text/parse.h"
 #include "diagnosis/guess/header.h"
+#include "diagnosis/guess/meanings.h"
 
 namespace photorque {
 
@@ -161,18 +162,57 @@ Header names_in_line(const NumberedLine& line, char separator, size_t width) {
   return {cells, true};
 }
 
+// The names of columns in numbered lines, one for each: "Label1: Voltage [V]", "Channel 2 = x
+// (mm)".
+Header names_in_numbered_lines(const std::vector<NumberedLine>& lines, size_t first, size_t width) {
+  Header names;
+  for (size_t k = 0; k < first && names.cells.size() < width; ++k) {
+    const std::string_view text = lines[k].text;
+    const size_t end = text.find_first_of(":=");
+    if (end == text.npos) continue;
+    const std::vector<std::string> words = words_of_header(text.substr(0, end));
+    const std::string_view name = trimmed(text.substr(end + 1));
+    const bool is_next = words.size() == 2 && words[1] == std::to_string(names.cells.size() + 1) &&
+                         is_one_of(words[0], {"label", "column", "col", "channel", "ch"});
+    if (is_next && !name.empty()) names.cells.push_back(joined_text(words_of(name), " "));
+  }
+  if (names.cells.size() != width) return {};
+  names.is_split_otherwise = true;
+  return names;
+}
+
+// The line of names above the rows: the last one that is neither a comment nor a row. A line that
+// contains numbers is the first row of a table with texts if a line of names alone is above it.
+std::optional<size_t> line_of_names(const std::vector<NumberedLine>& lines, size_t first,
+                                    char separator, size_t width) {
+  std::optional<size_t> last;
+  for (size_t k = first; k-- > 0;) {
+    if (is_comment(lines[k]) || numbers_in(lines[k], separator, 1)) continue;
+    const Header names = names_in_line(lines[k], separator, width);
+    const bool has_number = std::ranges::any_of(
+        names.cells, [](const std::string& cell) { return number_in(cell).has_value(); });
+    if (!names.cells.empty() && !has_number) return k;
+    if (!last && !has_number) return k;
+    if (!last) last = k;
+  }
+  return last;
+}
+
 // Adds the names of the columns to a table whose rows start at `lines[first]`: those of the last
 // line above it that is neither a comment nor a single number or, if that has another number of
-// cells, of the comment above the rows or the last one that states a unit.
+// cells, of the comment above the rows or the last one that states a unit, or of numbered lines.
 void add_header(FileHead& head, const std::vector<NumberedLine>& lines, size_t first,
                 char separator, size_t width) {
   const auto has_unit = [](const std::string& cell) {
     return read_header_cell(cell).unit.has_value();
   };
+  const auto above_rows = line_of_names(lines, first, separator, width);
   for (const bool of_comments : {false, true}) {
     for (size_t k = first; k-- > 0 && head.header.empty();) {
       const NumberedLine& line = lines[k];
-      if (is_comment(line) != of_comments || numbers_in(line, separator, 1)) continue;
+      if (of_comments ? !is_comment(line) || numbers_in(line, separator, 1) : k != above_rows) {
+        continue;
+      }
       Header names = names_in_line(line, separator, width);
       const bool counts =
           !of_comments || k + 1 == first || std::ranges::any_of(names.cells, has_unit);
@@ -191,9 +231,12 @@ void add_header(FileHead& head, const std::vector<NumberedLine>& lines, size_t f
         }
         if (head.is_split_otherwise) head.units.clear();
       }
-      if (!of_comments) break;
     }
   }
+  if (!head.header.empty()) return;
+  Header numbered = names_in_numbered_lines(lines, first, width);
+  head.header = std::move(numbered.cells);
+  head.is_split_otherwise = numbered.is_split_otherwise;
 }
 
 // The first table with this separator. It has no column names if no line above it has the number of

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -24,19 +23,18 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
 void guess_motion(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
                   const RecordingOptions& reading);
 
-// Columns of a current-voltage curve: channel ("voltage_V", "current_mA") → column of the file.
-struct GuessedCurve {
-  std::map<std::string, std::string> columns;  // empty: not exactly one voltage and one current
-  std::string because = {};                    // the assumption, if there is one
-};
-// Adds the table [module] for current-voltage curves. Throws InputError if a file contains another
-// kind of recording.
+// Adds the table [module] for current-voltage curves. `reading.columns` are those of the voltage
+// and the current if files are not read without. Throws InputError if a file contains another kind
+// of recording.
 void guess_module(TomlDocument& experiment, const std::vector<std::filesystem::path>& recordings,
-                  const std::filesystem::path& folder, const GuessedCurve& named,
-                  RecordingOptions reading);
+                  const std::filesystem::path& folder, const RecordingOptions& reading);
 
 // Writes header and rate into [recording] if they are stated.
 void add_reading(TomlDocument& experiment, const RecordingOptions& reading);
+
+// The remedy for counts of an encoder, in a message.
+inline constexpr const char* counts_of_encoder =
+    "an angle: divide the counts of an encoder by those of a turn, and name the column angle_rev";
 
 struct GuessedColumn {
   std::string in_file;  // as in the header
@@ -59,8 +57,8 @@ std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path,
 // Whether one of them is an angle, a rate, a quaternion or a coordinate.
 bool has_motion(const std::vector<GuessedColumn>& columns);
 
-// The voltage and the current of a file whose header names one of each.
-GuessedCurve guess_curve(const std::filesystem::path& path, const RecordingOptions& reading);
+// Whether one of them is a time.
+bool has_time(const std::vector<GuessedColumn>& columns);
 
 // The names of the columns in quotes, for messages.
 std::string names_in(const std::filesystem::path& path, const RecordingOptions& reading);

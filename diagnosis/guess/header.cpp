@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 
-#include "attitude/recordings/text_lines.h"
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
 
@@ -242,9 +241,7 @@ std::optional<HeaderUnit> unit_written(std::string_view text) {
       {{"V", "voltage"}, {"volt", "volts", "voltios"}},
       {{"mV", "voltage"}, {"millivolt", "millivolts"}},
       {{"A", "current"}, {"amp", "amps", "ampere", "amperes", "amperios"}},
-      {{"mA", "current"}, {"milliampere", "milliamps"}},
-      {{"mA", "current density"}, {"ma/cm2", "ma cm-2", "macm-2"}},
-      {{"A", "current density"}, {"a/cm2", "a cm-2", "acm-2", "a/m2", "a m-2"}}};
+      {{"mA", "current"}, {"milliampere", "milliamps"}}};
   text = trimmed(text);
   if (text.starts_with("in ")) text.remove_prefix(3);  // "Voltage (in V)"
   const std::string as_written(trimmed(ascii_of(text, true))), plain = plain_unit(text);
@@ -386,8 +383,7 @@ bool is_bare_unit(std::string_view text) {
 }  // namespace
 
 HeaderCell read_header_cell(const std::string& in_file) {
-  const std::string whole = header_cell_text(in_file);
-  const std::string_view text = trimmed(whole);
+  const std::string_view text = trimmed(in_file);
   HeaderCell cell;
   cell.is_between_bars = text.starts_with('|') && text.find('|', 1) != std::string_view::npos;
   if (is_bare_unit(text)) {

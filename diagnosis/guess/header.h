@@ -13,7 +13,7 @@ struct HeaderUnit {
   std::string suffix;
   // "time", "angle", "angular rate", "frequency" (Hz), "per second" (1/s: radians or revolutions),
   // "length", "speed", "acceleration", "angular acceleration", "magnetic field", "voltage",
-  // "current", "current density", "power", "resistance", "illuminance".
+  // "current", "power", "resistance", "illuminance".
   std::string dimension;
 };
 

@@ -117,7 +117,8 @@ std::vector<Meaning> meanings(const Words& words, const std::string& axis, const
   const bool is_long = !cell.unit || cell.unit->dimension == "length";
   if (!rate && !angle && axis.empty() && is_long &&
       (words.has_word_with_prefix({"posi", "displac", "distan", "abstand", "strecke", "auslenk",
-                                   "elong", "deplac", "despl", "posic", "spost"}) ||
+                                   "elong", "deplac", "despl", "posic", "spost", "height", "altit",
+                                   "hohe", "hauteur", "altura", "altezza"}) ||
        words.any_is({"weg", "ort", "pos"}))) {
     all.push_back({"x", "m", "a coordinate without a name counts as x:"});
   }

@@ -8,13 +8,13 @@
 #include "attitude/observation/noise_levels.h"
 #include "attitude/recordings/aem.h"
 #include "attitude/recordings/columns.h"
-#include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/linear.h"
 #include "core/text/format.h"
 #include "diagnosis/guess/file_head.h"
 #include "diagnosis/guess/guess.h"
+#include "diagnosis/guess/header.h"
 #include "diagnosis/guess/places.h"
 
 namespace photorque {
@@ -398,7 +398,7 @@ RecordingOptions options_of(const std::vector<GuessedColumn>& columns,
   RecordingOptions options = reading;
   for (const GuessedColumn& c : columns) {
     if (c.channel.empty() || c.channel == c.in_file) continue;
-    options.columns[c.channel] = header_cell_text(c.in_file);
+    options.columns[c.channel] = c.in_file;
   }
   return options;
 }
@@ -407,8 +407,7 @@ void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& colum
   for (const GuessedColumn& c : columns) {
     if (c.channel.empty() || c.channel == c.in_file) continue;
     if (!c.is_sure) document.comment("CONFIRM: " + c.because + " the next column.");
-    document.set(document.table("recording"), "columns." + c.channel,
-                 {header_cell_text(c.in_file)});
+    document.set(document.table("recording"), "columns." + c.channel, {c.in_file});
   }
 }
 
@@ -427,17 +426,19 @@ void require_motion(const fs::path& path, const std::vector<GuessedColumn>& colu
   if (is_aem(path)) return;
   const auto any = [&columns](const auto& is) { return std::ranges::any_of(columns, is); };
   const bool counts = any([](const GuessedColumn& c) { return c.channel == "frame"; });
-  const bool has_time =
-      reading.rate_Hz || any([](const GuessedColumn& c) { return c.channel.starts_with("t_"); });
-  if (has_time && has_motion(columns)) return;
+  const bool has_clock = reading.rate_Hz || has_time(columns);
+  if (has_clock && has_motion(columns)) return;
+  const std::string of_light =
+      "; a curve needs one voltage and one current, a scan of light u_m, v_m and irradiance_W_m2";
   std::string found = "no time among ",
               expected =
                   counts ? "frames per second beside the frames: --rate-Hz 30"
                          : "a time with its unit, such as t_s or \"Time (ms)\", or the rows per "
-                           "second: --rate-Hz 100";
+                           "second: --rate-Hz 100" +
+                               of_light;
   const auto shared = [](const GuessedColumn& c) { return !c.shared.empty(); };
   const auto first = std::ranges::find_if(columns, shared);
-  if (has_time && first != columns.end()) {
+  if (has_clock && first != columns.end()) {
     found = "several columns that may be " + first->shared + ": ";
     size_t place = 0;
     const std::string names = joined_text(columns, ",", [&](const GuessedColumn& c) {
@@ -447,17 +448,23 @@ void require_motion(const fs::path& path, const std::vector<GuessedColumn>& colu
                                   : "column_" + std::to_string(place);
     });
     expected = "one body, with one of them; " + command_with_names(path, names);
-  } else if (has_time) {
-    found = "no angle, rate or coordinate among ";
-    expected =
-        "a quantity with its unit, such as \"angle (deg)\", rate_rpm, gyro_x_rad_s, or x_m and y_m";
+  } else if (!has_motion(columns)) {
+    found = has_clock ? "no angle, rate or coordinate among " : "neither motion nor a curve among ";
+    expected = (has_clock ? "" : "a time (t_s) and ") +
+               std::string(
+                   "a quantity with its unit, such as \"angle (deg)\", rate_rpm, "
+                   "gyro_x_rad_s, or x_m and y_m") +
+               of_light;
   }
-  throw InputError({path.string()}, "header", found + names_in(path, reading),
-                   counts || first != columns.end()
-                       ? expected
-                       : expected +
-                             "; of a curve of a module one voltage and one current (voltage_V, "
-                             "current_A)");
+  // Counts of an encoder, or of another instrument.
+  const auto in_counts = std::ranges::find_if(columns, [](const GuessedColumn& c) {
+    const auto unit = read_header_cell(c.in_file).unit;
+    return unit && unit->dimension == "angle" && unit->suffix.empty();
+  });
+  if (!has_motion(columns) && in_counts != columns.end()) {
+    throw InputError({path.string()}, in_counts->in_file, "counts", counts_of_encoder);
+  }
+  throw InputError({path.string()}, "header", found + names_in(path, reading), expected);
 }
 
 void require_rows(const fs::path& path, const std::vector<GuessedColumn>& columns,
@@ -465,9 +472,11 @@ void require_rows(const fs::path& path, const std::vector<GuessedColumn>& column
   if (recording.rows() >= fewest_readings) return;
   const auto first =
       std::ranges::find_if(columns, [](const GuessedColumn& c) { return has_motion({c}); });
-  throw InputError({path.string()}, header_cell_text(first->in_file),
+  throw InputError({path.string()}, first->in_file,
                    std::to_string(recording.rows()) + " rows with a time",
-                   "at least " + std::to_string(fewest_readings) + " readings");
+                   "at least " + std::to_string(fewest_readings) +
+                       " readings, of which some test the result: more frames per second, or a "
+                       "longer recording");
 }
 
 // Adds the spring that pulls back a coordinate that oscillates. A fit that starts without a spring

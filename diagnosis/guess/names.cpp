@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "attitude/recordings/aem.h"
-#include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/settings/settings.h"
@@ -329,6 +328,23 @@ void read_counter(const FileHead& head, std::vector<ReadColumn>& columns) {
   }
 }
 
+// Large whole numbers of an encoder without a unit are counts.
+void refuse_counts(const FileHead& head, const std::vector<ReadColumn>& columns,
+                   const InputLocation& where) {
+  constexpr double several_turns = 20.0;  // rad
+  for (size_t k = 0; k < columns.size(); ++k) {
+    const Words words{words_of_header(columns[k].guess.in_file)};
+    const bool is_whole = std::ranges::all_of(head.rows, [k](const auto& row) {
+      return std::isnan(row[k]) || row[k] == std::round(row[k]);
+    });
+    if (columns[k].stem == "angle" && !columns[k].guess.is_sure && is_whole &&
+        largest_in(head, k) > several_turns && words.has_word_with_prefix({"encod", "count"})) {
+      throw InputError(where, columns[k].guess.in_file, "whole numbers without a unit",
+                       counts_of_encoder);
+    }
+  }
+}
+
 // A reading in an unknown unit would be of a wrong size, and the motion without it another.
 void refuse_wrong_units(const std::vector<ReadColumn>& columns, const InputLocation& where) {
   const bool turns = std::ranges::any_of(columns, [](const ReadColumn& c) {
@@ -337,8 +353,7 @@ void refuse_wrong_units(const std::vector<ReadColumn>& columns, const InputLocat
   for (const ReadColumn& c : columns) {
     if (c.wrong_unit.empty() || is_taken(columns, c.stem)) continue;
     if (begins(c.stem, {"accel_", "mag_"}) || (turns && is_one_of(c.stem, {"x", "y"}))) continue;
-    throw InputError(where, header_cell_text(c.guess.in_file),
-                     "the unit " + in_quotes(c.wrong_unit),
+    throw InputError(where, c.guess.in_file, "the unit " + in_quotes(c.wrong_unit),
                      units_for(c.dimension) +
                          ": convert the column, or rename it if it is another "
                          "quantity");
@@ -354,6 +369,7 @@ std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path,
   std::vector<ReadColumn> columns = read_columns(head);
   if (!is_taken(columns, "t")) read_counter(head, columns);
   refuse_wrong_units(columns, {path.string(), head.line});
+  refuse_counts(head, columns, {path.string(), head.line});
   std::vector<GuessedColumn> all;
   for (const ReadColumn& column : columns) all.push_back(column.guess);
   return all;
@@ -363,54 +379,14 @@ bool has_motion(const std::vector<GuessedColumn>& columns) {
   return std::ranges::any_of(columns, [](const GuessedColumn& c) { return is_motion(c.channel); });
 }
 
-GuessedCurve guess_curve(const std::filesystem::path& path, const RecordingOptions& reading) {
-  GuessedCurve curve;
-  std::vector<size_t> voltages, currents;
-  if (is_aem(path)) return curve;
-  const FileHead head = head_of(path, reading);
-  std::vector<HeaderCell> cells;
-  for (size_t place = 0; place < head.header.size(); ++place) {
-    cells.push_back(cell_of(head, place));
-    const HeaderCell& cell = cells.back();
-    const Words words{cell.words.empty() ? words_of_header(head.header[place]) : cell.words};
-    if (is_of_another_kind(words)) continue;
-    const std::string dimension = cell.unit ? cell.unit->dimension : "";
-    const bool no_unit = !cell.unit && cell.unit_text.empty();
-    const bool is_voltage =
-        words.any_has({"voltage", "spannung", "voltaje", "tension", "tensao"}) ||
-        words.any_is({"volt", "volts", "u", "v", "vpv", "upv", "vmod", "umod"});
-    const bool is_current =
-        words.any_has({"current", "strom", "courant", "corriente", "corrente"}) ||
-        words.any_is({"amp", "amps", "ampere", "i", "j", "ipv", "imod"});
-    if (dimension == "voltage" || (is_voltage && !is_current && no_unit)) voltages.push_back(place);
-    if (dimension == "current" || dimension == "current density" ||
-        (is_current && !is_voltage && no_unit)) {
-      currents.push_back(place);
-    }
-  }
-  if (voltages.size() != 1 || currents.size() != 1) return curve;
-  const HeaderCell &voltage = cells[voltages[0]], &current = cells[currents[0]];
-  curve.columns["voltage_" + (voltage.unit ? voltage.unit->suffix : "V")] =
-      header_cell_text(head.header[voltages[0]]);
-  const bool is_density = current.unit ? current.unit->dimension == "current density"
-                                       : Words{current.words}.any_is({"j"});
-  std::string unit = current.unit ? current.unit->suffix : "A";
-  // Sunlight generates at most 0.07 A/cm² in one junction, so larger numbers are in mA/cm².
-  if (is_density && !current.unit) unit = largest_in(head, currents[0]) > 0.5 ? "mA" : "A";
-  curve.columns["current_" + unit] = header_cell_text(head.header[currents[0]]);
-  if (is_density) {
-    curve.because =
-        "a current density is read as the current of a unit of area (1 cm², "
-        "or 1 m² if that is its unit)";
-    if (!current.unit) curve.because += ", in " + unit + "/cm² by its size";
-    curve.because += ": multiply currents by the area of the cell.";
-  }
-  return curve;
+bool has_time(const std::vector<GuessedColumn>& columns) {
+  return std::ranges::any_of(columns,
+                             [](const GuessedColumn& c) { return c.channel.starts_with("t_"); });
 }
 
 std::string names_in(const std::filesystem::path& path, const RecordingOptions& reading) {
   return joined_text(head_of(path, reading).header, ", ",
-                     [&](const std::string& name) { return in_quotes(header_cell_text(name)); });
+                     [&](const std::string& name) { return in_quotes(name); });
 }
 
 }  // namespace photorque

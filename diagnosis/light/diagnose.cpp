@@ -273,7 +273,7 @@ Diagnosis diagnose_light(const LightLab& lab, const NominalLight& nominal,
   const std::string first = recordings.front().name;
   Diagnosis d;
   for (const auto* files : {&recordings, &holdouts}) {
-    for (std::string& note : reversal_notes(*files)) d.warnings.push_back(std::move(note));
+    for (std::string& note : reading_notes(*files)) d.warnings.push_back(std::move(note));
   }
   LightData data = read_light_data(lab, nominal, std::move(recordings), std::move(holdouts));
   require_enough(data, first);

@@ -84,7 +84,11 @@ bool reverse_negative(IvSweep& sweep) {
   const auto highest = std::ranges::max_element(voltage_V);
   const double short_circuit_A =
       current_at(std::ranges::min_element(voltage_V, {}, [](double v) { return std::abs(v); }));
-  if (!(short_circuit_A < 0.0 && *highest > 0.0 && current_at(highest) > 0.5 * short_circuit_A)) {
+  // A smaller current, as of a dark curve, may be an offset of the meter.
+  constexpr double offset = 1e-3;
+  const auto [least_A, most_A] = std::ranges::minmax(sweep.current_A);
+  if (!(short_circuit_A < -offset * (most_A - least_A) && *highest > 0.0 &&
+        current_at(highest) > 0.5 * short_circuit_A)) {
     return false;
   }
   for (double& current : sweep.current_A) current = -current;
@@ -218,13 +222,14 @@ CurveCleaning clean_curve(IvSweep& sweep, bool dark_parts) {
     if (dark_parts && usual_A >= 0.0 && volts(first) < end * volts(order.size() - 1)) break;
     for (double& one : tail) one = std::abs(one - usual_A);
     const double around_A = std::max(5.0 * upper_median(tail), 2e-3 * scale_A);
+    while (std::abs(amperes(first) - usual_A) > around_A) ++first;
+    // One or two small currents may be true unless they are equal.
+    constexpr size_t fewest = 3;
+    if (order.size() - first < fewest && amperes(first) != amperes(order.size() - 1)) break;
     std::vector<char> out(order.size(), 0);
-    for (size_t k = first; k < order.size(); ++k) {
-      if (cleaning.clipped == 0 && std::abs(amperes(k) - usual_A) > around_A) continue;
-      if (cleaning.clipped == 0) cleaning.clipped_from_V = volts(k);
-      out[order[k]] = 1;
-      ++cleaning.clipped;
-    }
+    for (size_t k = first; k < order.size(); ++k) out[order[k]] = 1;
+    cleaning.clipped = order.size() - first;
+    cleaning.clipped_from_V = volts(first);
     cleaning.clipped_A = usual_A;
     take(out, sweep, cleaning);
     break;

@@ -149,12 +149,14 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
 // Whether all columns of a header belong to a curve. A log of a motor, for example, has further
 // columns.
 bool is_of_curve(std::string_view line, const Header& header, bool by_unit) {
+  if (header.reading) return lower_case(line).find("unit") != line.npos;
   constexpr std::string_view beside =
       "power,p,leistung,puissance,potencia,potenza,time,zeit,temps,tiempo,tempo,date,index,point,"
       "no,nr,number,id,rep,/,in,watts,watt,run,direction,status,stat,res";
   for (const std::string_view cell : split_header(line, header.separator)) {
     std::string text = lower_case(unquoted(cell));
-    if (text.empty() || named(text).column != columns) continue;
+    // A dark curve beside the one in light is left out.
+    if (text.empty() || text.find("dark") != text.npos || named(text).column != columns) continue;
     if (by_unit && named_by_unit(text).column != columns) continue;
     std::ranges::replace(text, '_', ' ');
     text = text.substr(0, text.find_first_of(" ([/.", 1));
@@ -185,10 +187,31 @@ class Reader {
   Reader(std::string_view text, const std::string& file, const CurveColumns& columns_named)
       : text_(text), lines_(text, file), file_(file), columns_named_(columns_named) {}
 
+  CurveColumns named_columns() {
+    if (!find_header() || header_.reading) return {};
+    CurveColumns named;
+    for (const Column column : {voltage, current}) {
+      const Unit& unit = header_.unit[column];
+      const bool is_density = unit.name.find('/') != unit.name.npos,
+                 needs_size = !header_.has_unit[column] && names_density(header_.title[column]);
+      const std::string prefix = unit.to_SI == 1e-3   ? "m"
+                                 : unit.to_SI == 1e-6 ? "u"
+                                                      : "",
+                        area = !is_density          ? ""
+                               : unit.to_SI == 1e-4 ? "_m2"
+                                                    : "_cm2";
+      named[column == voltage ? "voltage_" + prefix + "V"
+            : needs_size      ? "current"
+                              : "current_" + prefix + "A" + area] = header_.title[column];
+    }
+    return named;
+  }
+
   std::vector<MeasuredCurve> read() {
-    find_header();
+    if (!find_header()) throw without_header();
     bool is_first = true;
     for (std::string_view line; lines_.next(line); is_first = false) {
+      if (is_first) header_.separator = separator_of_rows(line);
       const std::vector<std::string_view> cells = split(line, header_.separator);
       if (is_first && states_units(cells)) continue;
       if (is_first && header_.reading) assign_instrument(cells);
@@ -208,23 +231,21 @@ class Reader {
                        "its unit in the header, K or °C");
     }
     std::vector<MeasuredCurve> all;
-    for (const double number : order_) all.push_back(finished(number));
+    for (const double number : order_) add_curves(rows_.at(number), all);
     if (all.empty()) throw InputError(lines_.where(), "", "no readings", "rows of numbers");
     all.back().unread += lines_after_;
     return all;
   }
 
  private:
+  // The readings with one curve number; NaN where a row states no irradiance, temperature or time.
   struct Rows {
-    MeasuredCurve curve;
-    std::array<double, columns> sum{};
-    std::array<double, columns> count{};
-    std::vector<double> irradiance_W_m2, time_s;  // one per reading that has one
+    std::array<std::vector<double>, columns> of;
+    size_t unread = 0;
   };
 
-  void find_header() {
+  bool find_header() {
     std::string_view line;
-    std::string first;
     for (const bool by_unit : {false, true}) {
       lines_ = DataLines(text_, file_);
       while (lines_.next(line)) {
@@ -232,14 +253,24 @@ class Reader {
           header_ = *header;
           refuse_ambiguous(line);
           read_conditions(line);
-          return;
+          return true;
         }
-        if (first.empty()) first = std::string(line.substr(0, 60));
       }
     }
-    throw InputError({file_, 1}, "", first.empty() ? "nothing" : in_quotes(first),
-                     "a header that names a voltage and a current: add the line "
-                     "voltage_V,current_A above the numbers");
+    return false;
+  }
+
+  InputError without_header() const {
+    DataLines lines(text_, file_);
+    std::string_view first;
+    lines.next(first);
+    const bool is_dark = lower_case(first).find("dark") != std::string::npos;
+    return {{file_, 1},
+            "",
+            first.empty() ? "nothing" : in_quotes(first.substr(0, 60)),
+            is_dark ? "a header that names the voltage and the current of a device in light"
+                    : "a header that names a voltage and a current: add the line "
+                      "voltage_V,current_A above the numbers"};
   }
 
   // Throws InputError for several columns that could be the voltage, or several currents beside a
@@ -280,9 +311,23 @@ class Reader {
       std::optional<Unit> unit = name.unit;
       if (words.size() > 1 && !unit) unit = unit_named(name.column, lower_case(words[1]));
       if (!unit && name.column == irradiance && words.size() == 1) unit = Unit{"", 1.0, 0.0};
+      if (number && !unit) without_unit_ = line;
       if (!number || !unit) continue;
       stated_[name.column] = (*number + unit->offset) * unit->to_SI;
     }
+  }
+
+  // The separator of the first row, which may differ from that of a header that was added by hand.
+  char separator_of_rows(std::string_view row) const {
+    const size_t own = split(row, header_.separator).size();
+    for (const char other : {'\t', ';', ' '}) {
+      const size_t cells = split(row, other).size();
+      if (own < header_.cells ? cells >= header_.cells
+                              : own > header_.cells && cells == header_.cells) {
+        return other;
+      }
+    }
+    return header_.separator;
   }
 
   // Determines which of reading and source is the voltage, and their units, from the first row.
@@ -371,68 +416,102 @@ class Reader {
     if (is_after_readings(cells)) return;
     const double number =
         header_.place[curve_number] ? value(curve_number, cells).value_or(0.0) : further;
-    const auto [found, is_new] = curves_.try_emplace(number);
+    const auto [found, is_new] = rows_.try_emplace(number);
     if (is_new) order_.push_back(number);
     Rows& rows = found->second;
     const auto v = value(voltage, cells), i = value(current, cells);
     if (!v || !i) {
-      ++rows.curve.unread;
+      ++rows.unread;
       return;
     }
-    rows.curve.sweep.voltage_V.push_back(*v);
-    rows.curve.sweep.current_A.push_back(*i);
+    rows.of[voltage].push_back(*v);
+    rows.of[current].push_back(*i);
     for (const Column column : {irradiance, temperature}) {
-      if (!header_.place[column]) continue;
-      const auto one = value(column, cells);
-      if (!one) continue;
-      rows.sum[column] += *one;
-      rows.count[column] += 1.0;
-      if (column == irradiance) rows.irradiance_W_m2.push_back(*one);
+      rows.of[column].push_back(header_.place[column] ? value(column, cells).value_or(NAN) : NAN);
     }
     // Times of day ("08:00") are ignored.
+    std::optional<double> time_s;
     if (header_.place[time] && *header_.place[time] < cells.size()) {
-      const auto number_s = number_in(plain(cells[*header_.place[time]]));
-      if (number_s) rows.time_s.push_back(*number_s * header_.unit[time].to_SI);
+      time_s = number_in(plain(cells[*header_.place[time]]));
     }
+    rows.of[time].push_back(time_s.value_or(NAN) * header_.unit[time].to_SI);
   }
 
-  MeasuredCurve finished(double number) {
-    Rows& rows = curves_.at(number);
-    const auto mean = [&](Column column) -> std::optional<double> {
-      if (rows.count[column] == 0.0 && stated_[column]) {
-        rows.curve.stated += (rows.curve.stated.empty() ? "" : ", ") +
-                             readable_number(*stated_[column], 5) +
-                             (column == irradiance ? " W/m²" : " K");
+  void add_curves(const Rows& rows, std::vector<MeasuredCurve>& all) const {
+    // Curves without numbers may stand one below the other.
+    std::vector<size_t> starts = {0};
+    if (!header_.place[curve_number]) starts = starts_of_curves(rows.of[voltage]);
+    for (size_t k = 0; k < starts.size(); ++k) {
+      const auto from = static_cast<ptrdiff_t>(starts[k]);
+      const auto to =
+          static_cast<ptrdiff_t>(k + 1 < starts.size() ? starts[k + 1] : rows.of[voltage].size());
+      std::array<std::vector<double>, columns> part;
+      for (size_t c = 0; c < rows.of.size(); ++c) {
+        if (!rows.of[c].empty()) part[c] = {rows.of[c].begin() + from, rows.of[c].begin() + to};
       }
-      if (rows.count[column] == 0.0) return stated_[column];
-      return rows.sum[column] / rows.count[column];
+      all.push_back(finished(std::move(part)));
+      all.back().is_stacked = starts.size() > 1;
+    }
+    all.back().unread = rows.unread;
+  }
+
+  MeasuredCurve finished(std::array<std::vector<double>, columns> readings) const {
+    MeasuredCurve curve;
+    // The mean of the rows that state a value, otherwise that above the header.
+    const auto mean = [&](Column column) -> std::optional<double> {
+      double sum = 0.0, count = 0.0;
+      for (const double one : readings[column]) {
+        if (!std::isfinite(one)) continue;
+        sum += one;
+        count += 1.0;
+      }
+      if (count > 0.0) return sum / count;
+      if (stated_[column]) {
+        curve.stated += (curve.stated.empty() ? "" : ", ") + readable_number(*stated_[column], 5) +
+                        (column == irradiance ? " W/m²" : " K");
+      }
+      return stated_[column];
     };
-    MeasuredCurve& curve = rows.curve;
     curve.irradiance_W_m2 = mean(irradiance);
     curve.temperature_K = mean(temperature);
+    curve.without_unit = without_unit_;
     curve.is_density = header_.unit[current].name.find('/') != std::string_view::npos;
+    curve.sweep.voltage_V = std::move(readings[voltage]);
+    curve.sweep.current_A = std::move(readings[current]);
+    // Sunlight generates at most 0.07 A/cm² in one junction: larger densities without a unit are in
+    // mA/cm².
+    if (!header_.has_unit[current] && names_density(header_.title[current])) {
+      constexpr double largest_A_cm2 = 0.5;
+      curve.is_density = true;
+      const bool is_milli = std::ranges::any_of(
+          curve.sweep.current_A, [](double one) { return std::abs(one) > largest_A_cm2; });
+      for (double& one : curve.sweep.current_A) one *= is_milli ? 1e-3 : 1.0;
+    }
     curve.is_reversed = reverse_negative(curve.sweep);
-    const size_t readings = curve.sweep.voltage_V.size();
-    if (rows.irradiance_W_m2.size() == readings && curve.irradiance_W_m2.value_or(0.0) > 0.0) {
-      for (const double one : rows.irradiance_W_m2) {
+    if (std::ranges::all_of(readings[irradiance], [](double one) { return std::isfinite(one); }) &&
+        curve.irradiance_W_m2.value_or(0.0) > 0.0) {
+      for (const double one : readings[irradiance]) {
         curve.sweep.light.push_back(one / *curve.irradiance_W_m2);
       }
-      if (std::ranges::min(curve.sweep.light) == std::ranges::max(curve.sweep.light)) {
+      if (!curve.sweep.light.empty() &&
+          std::ranges::min(curve.sweep.light) == std::ranges::max(curve.sweep.light)) {
         curve.sweep.light.clear();
       }
     }
-    find_rates(curve.sweep, rows.time_s);
-    return std::move(curve);
+    std::erase_if(readings[time], [](double one) { return !std::isfinite(one); });
+    find_rates(curve.sweep, std::move(readings[time]));
+    return curve;
   }
 
   std::string_view text_;
   DataLines lines_;
   std::string file_;
-  const CurveColumns& columns_named_;
+  CurveColumns columns_named_;
   Header header_;
-  std::map<double, Rows> curves_;
+  std::map<double, Rows> rows_;
   std::vector<double> order_;
   std::array<std::optional<double>, columns> stated_;  // above the header
+  std::string without_unit_;                           // above the header
   std::optional<InputError> after_readings_;           // the first line without a voltage
   size_t lines_after_ = 0;
 };
@@ -440,9 +519,41 @@ class Reader {
 }  // namespace
 }  // namespace curve_text
 
+std::vector<size_t> starts_of_curves(const std::vector<double>& voltage_V) {
+  constexpr size_t fewest = 6;  // readings of a curve
+  // Fractions of the range of the voltages of a curve.
+  constexpr double returns = 0.8, near = 0.2, steady = 0.1;
+  std::vector<size_t> starts = {0};
+  double low = NAN, high = NAN, rise = 0.0, fall = 0.0;  // `rise`, `fall`: largest steps
+  for (size_t i = 0; i < voltage_V.size(); ++i) {
+    const size_t first = starts.back();
+    const double v = voltage_V[i], range = high - low,
+                 step = i > first ? v - voltage_V[i - 1] : 0.0,
+                 net = i > first ? voltage_V[i - 1] - voltage_V[first] : 0.0;
+    if (i >= first + fewest && voltage_V.size() - i >= fewest && step * net < 0.0 &&
+        std::min(std::abs(step), std::abs(net)) > returns * range &&
+        (net > 0.0 ? fall : rise) <= steady * range && v > low - near * range &&
+        v < high + near * range) {
+      starts.push_back(i);
+      low = high = NAN;
+      rise = fall = 0.0;
+    } else {
+      rise = std::max(rise, step);
+      fall = std::max(fall, -step);
+    }
+    low = std::fmin(low, v);
+    high = std::fmax(high, v);
+  }
+  return starts;
+}
+
 std::vector<MeasuredCurve> curves_in(std::string_view text, const std::string& file,
                                      const CurveColumns& columns) {
   return curve_text::Reader(text, file, columns).read();
+}
+
+CurveColumns curve_columns_in(std::string_view text, const std::string& file) {
+  return curve_text::Reader(text, file, {}).named_columns();
 }
 
 bool is_curve_header(std::string_view line, const CurveColumns& columns) {

@@ -20,7 +20,9 @@ struct MeasuredCurve {
   std::optional<double> irradiance_W_m2, temperature_K;
   bool is_reversed = false;  // its currents were negative in light; they are positive here
   bool is_density = false;   // its currents are those of 1 cm²
+  bool is_stacked = false;   // another curve stands above or below it in the same rows
   std::string stated;        // irradiance and temperature by the lines above the header, in words
+  std::string without_unit;  // a line above the header with a temperature whose unit is missing
   // Rows without a number: empty, "NaN", "OL", an instrument's overflow; and lines below the last
   // reading.
   size_t unread = 0;
@@ -38,23 +40,35 @@ struct MeasuredCurve {
 // a source-measure unit's buffer ("Reading", "Unit", "Source Value") is also accepted. The header
 // may name an irradiance ("irradiance_W_m2", "G (W/m2)"), a temperature with its unit
 // ("temperature_K", "cell_temperature_K", "T (°C)"), a time, and a column "sweep" or "curve" that
-// numbers the curves of one file. Voltages and currents without a unit are V and A; a row below the
-// header or the cells may state the units. Currents that are negative in light are reversed.
+// numbers the curves of one file; curves without numbers may stand one below the other. Voltages
+// and currents without a unit are V and A, current densities A/cm², or mA/cm² above 0.5; a row
+// below the header or the cells may state the units. Currents that are negative in light are
+// reversed.
 //
 // Throws InputError with the line if there is no such header, a unit is unknown, or a cell is
 // neither a number nor a mark of a missing one.
 std::vector<MeasuredCurve> curves_in(std::string_view text, const std::string& file,
                                      const CurveColumns& columns = {});
 
+// The readings at which curves begin that stand one below the other: the first one, and those to
+// which the voltage returns in one step by more than 0.8 of its range after it went one way. Each
+// curve has at least six readings.
+std::vector<size_t> starts_of_curves(const std::vector<double>& voltage_V);
+
 // Whether a line is such a header and all its columns belong to a curve (power, time and numbers of
 // points are allowed), or it has names from `columns`.
 bool is_curve_header(std::string_view line, const CurveColumns& columns = {});
+
+// The columns of the voltage and the current that the header of a text names, also beside columns
+// of other quantities: {"voltage_mV", "U"}, {"current_A", "I (A)"}; empty without such a header.
+// Throws InputError for an unknown unit, and for several columns that could be the voltage.
+CurveColumns curve_columns_in(std::string_view text, const std::string& file);
 
 // The cells of such a header as written in the file, without quotation marks.
 std::vector<std::string> curve_header_cells(std::string_view line);
 
 // Reverses the currents of a curve whose current is counted into the device. Returns whether it
-// did.
+// did. A current at zero voltage below 1e-3 of the range of the currents is not one of light.
 bool reverse_negative(IvSweep& sweep);
 
 // Points of a curve that are left out because no cell produces them.

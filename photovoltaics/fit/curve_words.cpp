@@ -63,17 +63,17 @@ constexpr std::pair<Column, std::string_view> names[] = {
 bool is_qualifier(std::string_view word) {
   constexpr std::string_view known =
       "mod,module,cell,meas,measured,corr,corrected,pv,dut,device,raw,dc,smu,stc,anode,channel,"
-      "panel,terminal,sense,mess,modul,zelle,ch,sample,set,a";
+      "panel,terminal,sense,mess,modul,zelle,ch,sample,set,a,light,lit,illum,illuminated";
   while (!word.empty() && std::isdigit(static_cast<unsigned char>(word.back()))) {
     word.remove_suffix(1);
   }
   return word.empty() || is_one_of(word, known);
 }
 
-// V, U or I with a qualifier before or behind it in one word: "vmod", "anodei".
+// V, U, I or J with a qualifier before or behind it in one word: "vmod", "anodei".
 Column joined_symbol(std::string_view word) {
-  for (const char symbol : {'v', 'u', 'i'}) {
-    const Column column = symbol == 'i' ? current : voltage;
+  for (const char symbol : {'v', 'u', 'i', 'j'}) {
+    const Column column = symbol == 'i' || symbol == 'j' ? current : voltage;
     if (word.size() < 2) return columns;
     if (word.starts_with(symbol) && is_qualifier(word.substr(1))) return column;
     // The symbol ends a longer word: "ai" is an analog input, "av" a mean.
@@ -176,17 +176,19 @@ Named named(std::string_view header_cell) {
   }
   Named result = named_without_brackets(std::string(trimmed(cell.substr(0, open))));
   const size_t close = cell.find_first_of(")]", open);
-  const std::string unit(trimmed(std::string_view(cell).substr(open + 1, close - open - 1)));
+  std::string_view unit = trimmed(std::string_view(cell).substr(open + 1, close - open - 1));
+  if (unit.starts_with("in ")) unit = trimmed(unit.substr(3));  // "Voltage (in V)"
   if (result.column == temperature && unit_named(time, unit)) result.column = time;
   if (result.column == columns) return result;
   result.unit = unit_named(result.column, unit);
-  if (!result.unit && !unit.empty()) result.unknown_unit = unit;
+  if (!result.unit && !unit.empty()) result.unknown_unit = std::string(unit);
   return result;
 }
 
 Named named_by_unit(std::string_view header_cell) {
   constexpr std::string_view excluded =
-      "voc,uoc,isc,jsc,vmp,imp,jmp,vmpp,impp,jmpp,vmax,imax,vpm,ipm,pmax,open,short,mpp,max,min,"
+      "voc,uoc,isc,jsc,oc,sc,mp,pm,vmp,imp,jmp,vmpp,impp,jmpp,vmax,imax,vpm,ipm,pmax,open,short,"
+      "mpp,max,min,"
       "maximum,minimum,sd,std,stdev,sigma,err,error,unc,uncertainty,noise,dark,limit,compliance,"
       "range,start,stop,step,delta";
   const std::string cell = lower_case(trimmed(header_cell));
@@ -211,6 +213,13 @@ Named named_by_unit(std::string_view header_cell) {
     }
   }
   return {};
+}
+
+bool names_density(std::string_view header_cell) {
+  const std::string cell = lower_case(trimmed(header_cell));
+  return named(cell).column == current &&
+         (cell.starts_with('j') || cell.find("dens") != cell.npos ||
+          cell.find("dicht") != cell.npos);
 }
 
 }  // namespace photorque::curve_text

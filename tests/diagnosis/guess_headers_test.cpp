@@ -295,13 +295,15 @@ TEST_F(Headers, OfCurvesOfAModule) {
         "Panel Voltage;Panel Current", "U_mod [V];I_mod [A]", "Voltage (in V);Current [in A]",
         "Voltage (in volts);I (in amps)", "Power in mW;Voltage (V);Current (A)",
         "power_W;Voltage (V);Current (A)", "Widerstand in kOhm;Spannung in V;Strom in A", "W;U;I",
-        "R (Ω);Spannung in V;Strom in A"}) {
+        "R (Ω);Spannung in V;Strom in A", "Source;Voltage;Current",
+        "lux;Panel_V (V);Panel_I (A)"}) {
     EXPECT_THAT(curve(header, 2.0), AllOf(HasSubstr("[module]"), Not(HasSubstr("density"))))
         << header;
   }
   EXPECT_THAT(curve("V;J (mA/cm2)", 20.0),
-              AllOf(HasSubstr("current_mA = \"J (mA/cm2)\""), HasSubstr("current density")));
-  EXPECT_THAT(curve("V;J", 0.02), HasSubstr("in A/cm² by its size"));
+              AllOf(HasSubstr("the current of 1 cm²"), Not(HasSubstr("columns"))));
+  EXPECT_THAT(curve("Sample no;V;J (mA/cm2)", 20.0), HasSubstr("current_mA_cm2 = \"J (mA/cm2)\""));
+  EXPECT_THAT(curve("V;J", 0.02), HasSubstr("the current of 1 cm²"));
   EXPECT_THAT(refusal_of([&] { curve("U;K", 1.0); }), HasSubstr("one voltage and one current"));
 }
 
@@ -327,7 +329,8 @@ TEST_F(Headers, OfCurvesThatAMeterMade) {
   const auto refusal = [](const std::string& text) {
     return refusal_of([&] { guess_experiment({test_file("few.csv", text)}, testing::TempDir()); });
   };
-  EXPECT_THAT(refusal("V,I\n0,5\n10,4\n20,0\n"), HasSubstr("at least 12 points"));
+  EXPECT_THAT(refusal("V,I\n0,5\n5,4.5\n10,NaN\n20,0\n"),
+              AllOf(HasSubstr("3 usable points in 4 rows"), HasSubstr("at least 12 points")));
   // A resistor of 2 ohm, and a tracker that goes about one point of a module.
   std::string resistor = "V,I\n", log = resistor;
   for (int i = 0; i < 40; ++i) {
@@ -336,6 +339,115 @@ TEST_F(Headers, OfCurvesThatAMeterMade) {
   }
   EXPECT_THAT(refusal(resistor), HasSubstr("a curve that no diode fits"));
   EXPECT_THAT(refusal(log), HasSubstr("not a log over time"));
+}
+
+// Curves of one diode with n = 1.3. The numbers of cells: STM6-40/36 at 51 °C and STP6-120/36 at
+// 55 °C (36 cells), PWP201 at 45 °C (36), SpectraVolt 100M36S (36), a roof of 16 modules of 72
+// cells.
+TEST_F(Headers, NumbersOfCellsAreThoseThatAreMade) {
+  const auto guess_of = [](double open_V, const std::string& above) {
+    std::string text = above + "Voltage (V),Current (A)\n";
+    for (int i = 0; i <= 40; ++i) {
+      // The last reading before the zero is at 39/40.5 of the open-circuit voltage.
+      const double volt = open_V * i / 40.5 * (i == 40 ? 1.02 : 1.0);
+      text += printed("%.5f,%.5f\n", volt, 5.0 * -std::expm1(20.0 * (volt / open_V - 1.0)));
+    }
+    return guess_experiment({test_file("cells.csv", text)}, testing::TempDir());
+  };
+  const auto cells = [&](int count) { return "cells_in_series = " + std::to_string(count) + "\n"; };
+  EXPECT_THAT(guess_of(21.02, "# T = 51 C\n"), HasSubstr(cells(36)));
+  EXPECT_THAT(guess_of(19.2, "# T = 55 C\n"), HasSubstr(cells(36)));
+  EXPECT_THAT(guess_of(16.78, ""), HasSubstr(cells(36)));
+  EXPECT_THAT(guess_of(20.2, ""), HasSubstr(cells(36)));
+  EXPECT_THAT(guess_of(22.4, ""), HasSubstr(cells(36)));
+  EXPECT_THAT(guess_of(39.0, ""), HasSubstr(cells(60)));
+  EXPECT_THAT(guess_of(0.573, ""), AllOf(HasSubstr(cells(1)), HasSubstr("give 0.57")));
+  EXPECT_THAT(guess_of(780.0, ""),
+              AllOf(HasSubstr("modules of 72 in a string"), HasSubstr("at 0.6"),
+                    Not(HasSubstr("Silicon in sunlight"))));
+  // Perovskite and organic cells.
+  EXPECT_THAT(guess_of(1.2, ""), AllOf(HasSubstr(cells(1)), HasSubstr("Silicon in sunlight")));
+  EXPECT_THAT(guess_of(0.2, ""), HasSubstr("Silicon in sunlight"));
+}
+
+// Conditions in the lines above a header: curves of ctib/BuildingSystems, and a PV-KLA tester,
+// whose text is Latin-1 and has tables of other numbers above the curve.
+TEST_F(Headers, ConditionsOfACurveAreThoseOfItsFile) {
+  std::string rows;
+  for (int i = 0; i <= 40; ++i) {
+    rows +=
+        printed("%.4f\t%.4f\t590\n", 0.0146 * i, 4.69 * -std::expm1((0.0146 * i - 0.578) / 0.04));
+  }
+  const std::string file = guess_experiment(
+      {test_file("kla.txt",
+                 "PVK 5.11\r\n[Parameter]\r\nPmpp in W\tVmpp in V\tG in W/m\xb2\tT in \xb0"
+                 "C\r\n"
+                 "2.03\t0.47\t589.5\t22.9\r\n[Curve Data]\r\nV in V\tI in A\tG in W/m\xb2\r\n" +
+                     rows)},
+      testing::TempDir());
+  EXPECT_THAT(file, AllOf(HasSubstr("cells_in_series = 1\n"), HasSubstr("states 590")));
+  EXPECT_THAT(guess_experiment({test_file("warm.txt", "# T = 50 C\nV\tI\tG (W/m2)\n" + rows)},
+                               testing::TempDir()),
+              AllOf(HasSubstr("temperature_K = 323.15"), HasSubstr("temperature_sigma_K = 5\n")));
+}
+
+// LOANA of ISFH: the names stand in lines, and a second voltage is beside the curve.
+TEST_F(Headers, MayBeNumberedLines) {
+  std::string rows;
+  for (int i = 0; i <= 40; ++i) {
+    rows += printed("%.4f\t%.5f\t25.03\t-2.67\n", 0.018 * i,
+                    -0.158 * -std::expm1((0.018 * i - 0.7034) / 0.027));
+  }
+  const fs::path file =
+      test_file("32_14.lgt",
+                "[Sample]\nCell area:\t3.96\t[cm\xb2]\n[Measurement]\nLabel1:\tVoltage\t[V]\n"
+                "Label2:\tCurrent\t[A]\nLabel3:\tTemperature\t[\xb0"
+                "C]\nLabel4:\tMonitor\t[V]\n\n"
+                "**Data**\n" +
+                    rows);
+  const std::string guessed = guess_experiment({file}, testing::TempDir());
+  EXPECT_THAT(guessed,
+              AllOf(HasSubstr("cells_in_series = 1\n"), HasSubstr("temperature_K = 298.18")));
+  const Settings root(std::make_shared<const SettingsNode>(parse_toml(guessed, "guess.toml")));
+  EXPECT_EQ(read_module(root, testing::TempDir()).references.at(0).rows(), 41u);
+  // Such columns in a table, of which the voltage and the current are mapped.
+  std::ranges::replace(rows, '\t', ',');
+  EXPECT_THAT(guess_experiment({test_file("loana.csv",
+                                          "Voltage (V),Current (A),Temperature (°C),"
+                                          "Monitor (V)\n" +
+                                              rows)},
+                               testing::TempDir()),
+              AllOf(HasSubstr("voltage_V = \"Voltage (V)\""), HasSubstr("temperature_K = 298.18")));
+  std::string turning;
+  for (int i = 0; i < 30; ++i) turning += printed("%.1f;%d\n", 0.1 * i, 1000 - i * i);
+  EXPECT_THAT(channels_in(test_file("turning.txt",
+                                    "Channel 1: Time (s)\nChannel 2: Speed (rpm)\n" + turning)),
+              testing::ElementsAre("t_s", "rate_rpm"));
+}
+
+TEST_F(Headers, OfAMachineWithItsVoltageAreOfMotion) {
+  std::string text = "t_s,rate_rpm,current_A,voltage_V\n";
+  for (int i = 0; i < 60; ++i) {
+    text += printed("%.2f,%.1f,0.5,12\n", 0.1 * i, 1000.0 * std::exp(-0.02 * i) + i % 2);
+  }
+  EXPECT_THAT(guess_experiment({test_file("motor.csv", text)}, "."), HasSubstr("one_axis"));
+}
+
+// A text beside the first row of numbers only.
+TEST_F(Headers, RowsWithATextAreNoHeader) {
+  std::string text = "run;t (s);phi (deg)\nfirst;0;10\n";
+  for (int i = 1; i < 30; ++i) text += printed(";%.1f;%.3f\n", 0.1 * i, 10.0 * std::cos(0.3 * i));
+  EXPECT_THAT(channels_in(test_file("texts.csv", text)),
+              testing::ElementsAre("", "t_s", "angle_deg"));
+}
+
+TEST_F(Headers, OfNeitherMotionNorACurveStateTheNeededColumns) {
+  for (const char* header : {"lux;voltage (V)", "R (cm);signal"}) {
+    EXPECT_THAT(
+        refusal_of([&] { guess_experiment({table(header)}, "."); }),
+        AllOf(HasSubstr("u_m, v_m and irradiance_W_m2"), HasSubstr("one voltage and one current")))
+        << header;
+  }
 }
 
 TEST_F(Headers, AreAskedForWithACommandForAShell) {
@@ -403,6 +515,7 @@ TEST_F(Headers, OfDistancesAndSpeedsBesideATime) {
   };
   EXPECT_THAT(names("t,s,v,a"), testing::ElementsAre("t_s", "x_m", "", ""));
   EXPECT_THAT(names("Time,Position,Velocity,a"), testing::ElementsAre("t_s", "x_m", "", ""));
+  EXPECT_THAT(names("time,height,ignored,a"), testing::ElementsAre("t_s", "x_m", "", ""));
   EXPECT_THAT(names("s,x,y,a"), testing::ElementsAre("t_s", "x_m", "y_m", ""));
 }
 
@@ -451,6 +564,19 @@ TEST_F(Headers, OfTwoBodiesAreRefusedWithACommandForOne) {
                 guess_columns(test_file("counts.csv", "t (s),encoder (counts)\n0,1\n1,2\n"));
               }),
               AllOf(HasSubstr("the unit \"counts\""), HasSubstr("rev (the counts of an encoder")));
+}
+
+TEST_F(Headers, CountsOfAnEncoderAreNoRadians) {
+  std::string whole = "Time,Encoder\n", named = "time(ms),position(counts)\n";
+  for (int i = 0; i < 40; ++i) {
+    whole += printed("%.2f,%d\n", 0.02 * i, 68 * i);
+    named += printed("%d,%d\n", 20 * i, 200 - 9 * i);
+  }
+  for (const std::string& text : {whole, named}) {
+    EXPECT_THAT(
+        refusal_of([&] { guess_experiment({test_file("encoder_counts.csv", text)}, "."); }),
+        HasSubstr("divide the counts of an encoder by those of a turn, and name the column"));
+  }
 }
 
 TEST_F(Headers, OfFewRowsAreNamedInTheRefusal) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <regex>
 
 #include "core/errors.h"
 #include "diagnosis/light/model/recording.h"
@@ -231,6 +232,22 @@ TEST(LightRecordings, ANamedColumnCountsBeforeOthersOfItsQuantity) {
     EXPECT_NEAR(sweep.current_A[1], 4.1 * scale, 1e-15) << name;
     EXPECT_TRUE(sweep.absent_columns.empty());
   }
+}
+
+TEST(LightRecordings, CurvesOneBelowTheOtherAreSeparated) {
+  const std::string one = curve_of_36_cells(1, ""), rows = one.substr(one.find('\n') + 1);
+  const auto stacked = read("voltage_V,current_A,cell_temperature_K\n" +
+                            std::regex_replace(rows, std::regex("\n"), ",298\n") +
+                            std::regex_replace(rows, std::regex("\n"), ",299\n"));
+  EXPECT_EQ(sweeps_of(stacked).size(), 2u);
+  EXPECT_THAT(reading_notes({stacked}), testing::ElementsAre(testing::HasSubstr("2 curves")));
+  EXPECT_TRUE(reading_notes({read(one)}).empty());
+}
+
+TEST(LightRecordings, AMissingColumnIsNamed) {
+  EXPECT_THAT(refusal("x,y,irradiance_W_m2\n0,0,800\n"), testing::HasSubstr("no column u_m, v_m"));
+  EXPECT_THAT(refusal("t_s,array_voltage_V,array_current_A\n0,8,1\n"),
+              testing::HasSubstr("no column q_w"));
 }
 
 TEST(LightRecordings, OthersAreRefused) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/numerics/random.h"
+#include "core/text/format.h"
 #include "ivcurves.h"
 #include "photovoltaics/fit/conditions.h"
 #include "photovoltaics/fit/fit.h"
@@ -50,6 +51,49 @@ TEST(PhotovoltaicFit, ATailThatTheMeterMadeIsLeftOut) {
       EXPECT_NEAR(fit.diode.photocurrent_A.value, 8.0, 0.01);
     }
   }
+}
+
+// The last readings of a curve measured by hand over loads (10 and 15 kΩ at 435 and 445 mV).
+TEST(PhotovoltaicFit, TwoSmallCurrentsAtTheEndStay) {
+  IvSweep sweep{
+      {0.185, 0.281, 0.322, 0.345, 0.365, 0.387, 0.402, 0.42, 0.435, 0.445},
+      {1.85e-3, 1.28e-3, 0.99e-3, 0.73e-3, 0.53e-3, 0.38e-3, 0.18e-3, 0.09e-3, 0.04e-3, 0.03e-3}};
+  EXPECT_EQ(clean_curve(sweep).clipped, 0u);
+  EXPECT_EQ(sweep.voltage_V.size(), 10u);
+}
+
+// The offset of a meter at 0 V is no photocurrent.
+TEST(PhotovoltaicFit, ADarkCurveIsNotReversed) {
+  IvSweep dark;
+  for (int i = 0; i <= 60; ++i) {
+    dark.voltage_V.push_back(0.01 * i);
+    dark.current_A.push_back(-4e-9 + 1e-10 * std::expm1(dark.voltage_V.back() / 0.026));
+  }
+  EXPECT_FALSE(reverse_negative(dark));
+}
+
+TEST(PhotovoltaicFit, CurvesOneBelowTheOtherAreSeparated) {
+  std::string text = "Source,Voltage,Current\n";
+  for (const double open_V : {780.0, 770.0, 790.0}) {
+    for (int i = 0; i <= 20; ++i) {
+      const double volt = open_V * i / 20.0;
+      text += printed("%s,%.2f,%.4f\n", i == 0 ? "S.csv" : "", volt,
+                      9.0 * -std::expm1((volt - open_V) / 40.0));
+    }
+  }
+  const auto curves = curves_in(text, "strings.csv");
+  ASSERT_EQ(curves.size(), 3u);
+  EXPECT_TRUE(curves[1].is_stacked);
+  EXPECT_EQ(curves[1].sweep.voltage_V.size(), 21u);
+  EXPECT_NEAR(curves[1].sweep.voltage_V.back(), 770.0, 1e-9);
+  // Forward and back, a last reading at 0 V, and readings in any order are one curve.
+  std::vector<double> both_ways, shuffled;
+  for (int i = 0; i <= 20; ++i) both_ways.push_back(i);
+  for (int i = 20; i >= 0; --i) both_ways.push_back(i);
+  for (int i = 0; i < 41; ++i) shuffled.push_back((17 * i) % 41);
+  EXPECT_EQ(starts_of_curves(both_ways).size(), 1u);
+  EXPECT_EQ(starts_of_curves(shuffled).size(), 1u);
+  EXPECT_EQ(starts_of_curves({0, 1, 2, 3, 4, 5, 6, 7, 0}).size(), 1u);
 }
 
 TEST(PhotovoltaicFit, DeadReadingsBelowAFlowingCurrentAreLeftOut) {
@@ -155,6 +199,16 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
            {"E (V),J_FW (mA cm-2)\n0.1,500\n0.2,400\n"},
            {"U_in_V,J_in_mA_cm2\n0.1,500\n0.2,400\n"},
            {"V (V),J (mA*cm^-2)\n0.1,500\n0.2,400\n"},
+           {"Voltage(in V),Current(in mA)\n0.1,500\n0.2,400\n"},
+           {"Voltage [in volts];Current [in amps]\n0,1;0,5\n0,2;0,4\n"},
+           // A current density without a unit, and dark columns beside those in light.
+           {"Voltage,J\n0.1,500\n0.2,400\n"},
+           {"Vdark,Jdark,Vlight,Jlight\n9,9,0.1,0.5\n9,9,0.2,0.4\n"},
+           {"V_oc (V),Volts,Amps\n9,0.1,0.5\n9,0.2,0.4\n"},
+           // A header that was added by hand above rows with other separators.
+           {"voltage_V,current_A\n0.1\t0.5\t25\n0.2\t0.4\t25\n"},
+           {"voltage_V,current_A\n0,1;0,5\n0,2;0,4\n"},
+           {"Voltage (V),Current (A),Monitor (V)\n0.1,0.5,9\n0.2,0.4,9\n"},
            {"Potential (V),J (mA cm⁻²)\n0.1,500\n0.2,400\n"},
            {"voltage_mV,current_mA\n100,500\n150,NaN\n200,400\n250,9.91E37\n"},
            {"voltage_V,current_A,irradiance_W_m2,Temperature "
@@ -215,6 +269,13 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
   EXPECT_THAT(message("Voc (V),Isc (A)\n0.6,8\n"), testing::HasSubstr("a header that names"));
   EXPECT_TRUE(is_curve_header("Voltage (V),Forward (mA),Reverse (mA)"));
   EXPECT_FALSE(is_curve_header("t,motor voltage (V),motor current (A)"));
+  EXPECT_TRUE(is_curve_header("Index,Reading,Unit,Source Value,Source Unit"));
+  EXPECT_TRUE(is_curve_header("Vdark,Jdark,Vlight,Jlight"));
+  for (const char* points : {"V_oc (V),I_sc (A)\n0.6,8\n", "V_mp_V,I_mp_A\n0.5,7\n"}) {
+    EXPECT_THAT(message(points), testing::HasSubstr("a header that names a voltage"));
+  }
+  EXPECT_THAT(message("Vdark,Jdark\n0.1,0.5\n"), testing::HasSubstr("of a device in light"));
+  EXPECT_EQ(curves_in("% T=39.8\nV,I\n0.1,0.5\n", "x")[0].without_unit, "T=39.8");
   EXPECT_THAT(message("V,I\n0.1,a\n"), testing::HasSubstr("curve.csv:2"));
   EXPECT_THAT(message("V,I,temperature\n0.1,0.5,25\n"), testing::HasSubstr("K or °C"));
 }

@@ -83,6 +83,14 @@ TEST_F(DiagnoseCommand, FiguresAreWrittenInTheFormatsThatAreAskedFor) {
   EXPECT_THAT(refused(command + " --format jpg"), HasSubstr("found \"jpg\", expected"));
 }
 
+// A voltage and a current beside the motion do not make the recording one of light.
+TEST_F(DiagnoseCommand, ALogWithVoltageAndCurrentIsOfMotion) {
+  const std::string log =
+      write("log.csv", with_columns(file_text(recording_), ",voltage_V,current_A", ",12,0.5"));
+  succeed("diagnose " + experiment_ + " --recording " + log + " --quiet --out " + at("log"));
+  EXPECT_THAT(file_text(at("log/diagnosis.json")), HasSubstr("gyro_z_rad_s"));
+}
+
 TEST_F(DiagnoseCommand, RecordingsOfTwoKindsAreListedByName) {
   const std::string curve = write("curve.csv", "voltage_V,current_A\n0,1\n0.3,0.9\n0.5,0\n");
   for (const std::string& both : {"--recording " + recording_ + " --recording " + curve,

@@ -11,6 +11,7 @@
 #include "core/files.h"
 #include "core/settings/settings.h"
 #include "core/text/format.h"
+#include "core/text/parse.h"
 #include "photovoltaics/fit/conditions.h"
 #include "photovoltaics/fit/curve_text.h"
 #include "photovoltaics/fit/fit.h"
@@ -37,6 +38,11 @@ void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
       task.notes.push_back(name + ": left out " + std::to_string(count) + " " + what);
     };
     note(curve.unread, "rows without a reading");
+    if (curve.is_stacked && k == 0) {
+      task.notes.push_back(file.filename().string() +
+                           ": the voltage returns in one step; read as " +
+                           std::to_string(curves.size()) + " curves, one below the other");
+    }
     if (curve.is_reversed) {
       task.notes.push_back(name + ": currents are negative in light; counted the other way round");
     }
@@ -45,6 +51,10 @@ void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
       task.notes.push_back(name + ": current densities; the parameters are those of 1 cm²");
     }
     if (!curve.stated.empty()) task.notes.push_back(name + ": " + curve.stated + " by its header");
+    if (!curve.without_unit.empty()) {
+      task.notes.push_back(name + ": " + in_quotes(curve.without_unit) +
+                           " has no unit, K or °C: not used");
+    }
     const CurveCleaning cleaning = clean_curve(curve.sweep, task.substrings > 0);
     note(cleaning.spikes, "readings far from both neighbours");
     note(cleaning.dead, "readings of 0 A below voltages at which a current flows");

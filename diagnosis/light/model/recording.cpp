@@ -13,6 +13,7 @@
 #include "core/numerics/random.h"
 #include "core/numerics/steady_intervals.h"
 #include "core/settings/settings.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "core/transform.h"
 #include "photovoltaics/fit/curve_text.h"
@@ -27,6 +28,19 @@ struct LightColumn {
   size_t place = 0;
   double to_SI = 1.0;
 };
+
+// The columns that identify a kind of recording, the most characteristic one last.
+struct ColumnsOfKind {
+  LightRecording::Kind kind;
+  std::vector<std::string> needed;
+};
+
+std::vector<ColumnsOfKind> columns_of_kinds() {
+  using Kind = LightRecording::Kind;
+  return {{Kind::scan, {"u_m", "v_m", "irradiance_W_m2"}},
+          {Kind::run, {"t_s", "q_w", "array_voltage_V", "array_current_A"}},
+          {Kind::sweep, {"voltage_V", "current_A"}}};
+}
 
 class LightHeader {
  public:
@@ -64,13 +78,24 @@ class LightHeader {
     }
     return std::nullopt;
   }
+  // The columns that a kind needs and this header lacks.
+  std::vector<std::string> missing_for(const ColumnsOfKind& kind) const {
+    std::vector<std::string> missing = kind.needed;
+    std::erase_if(missing, [&](const std::string& name) { return find(name).has_value(); });
+    return missing;
+  }
   std::optional<LightRecording::Kind> kind() const {
-    if (find("u_m") && find("v_m") && find("irradiance_W_m2")) return LightRecording::Kind::scan;
-    if (find("t_s") && find("q_w") && find("array_voltage_V") && find("array_current_A")) {
-      return LightRecording::Kind::run;
+    for (const ColumnsOfKind& kind : columns_of_kinds()) {
+      if (missing_for(kind).empty()) return kind.kind;
     }
-    if (find("voltage_V") && find("current_A")) return LightRecording::Kind::sweep;
     return std::nullopt;
+  }
+  // The missing columns of a kind whose most characteristic one is present.
+  std::vector<std::string> missing() const {
+    for (const ColumnsOfKind& kind : columns_of_kinds()) {
+      if (find(kind.needed.back())) return missing_for(kind);
+    }
+    return {};
   }
 
  private:
@@ -109,20 +134,35 @@ bool next_line(TextLines& lines, std::string_view& line) {
 struct Beginning {
   std::optional<LightHeader> header;
   bool is_curve = false;
-  std::vector<std::string> cells;  // header cells as written
+  std::vector<std::string> cells;    // header cells as written
+  std::vector<std::string> missing;  // without a header: columns that the nearest line lacks
 };
+
+// Whether a header of foreign names becomes that of a curve by the names that are mapped. The
+// reader of curves knows foreign names of its irradiance and temperature, but no attitude.
+bool is_foreign_curve(std::string_view line, const std::map<std::string, std::string>& columns) {
+  const bool has_attitude = std::ranges::any_of(columns, [](const auto& column) {
+    return column.first.starts_with("tilt") || column.first.starts_with("heading") ||
+           column.first.starts_with("q_");
+  });
+  return LightHeader(line, columns).kind() == LightRecording::Kind::sweep && !has_attitude &&
+         !LightHeader(line, {}).kind() && is_curve_header(line, columns);
+}
 
 // Preambles may lack comment marks: the header is the first line that identifies a kind of
 // recording.
 Beginning find_header(TextLines& lines, const std::map<std::string, std::string>& columns) {
   constexpr int most = 200;
   std::string_view line;
+  Beginning unknown;
   for (int i = 0; i < most && next_line(lines, line); ++i) {
     LightHeader header(line, columns);
-    if (header.kind()) return {header, false, header.written()};
-    if (is_curve_header(line, columns)) return {{}, true, curve_header_cells(line)};
+    if (is_foreign_curve(line, columns)) return {{}, true, curve_header_cells(line), {}};
+    if (header.kind()) return {header, false, header.written(), {}};
+    if (is_curve_header(line, columns)) return {{}, true, curve_header_cells(line), {}};
+    if (unknown.missing.empty()) unknown.missing = header.missing();
   }
-  return {};
+  return unknown;
 }
 
 struct ColumnsOfLight {
@@ -315,6 +355,8 @@ LightRecording curves_of_instrument(const std::filesystem::path& path,
     append(all.temperature_K, curve.temperature_K.value_or(usual.temperature_K));
     if (has_light) append(all.irradiance_W_m2, curve.irradiance_W_m2.value_or(absent));
     all.is_reversed = all.is_reversed || curve.is_reversed;
+    all.is_stacked = all.is_stacked || curve.is_stacked;
+    all.is_density = all.is_density || curve.is_density;
     all.has_temperatures = all.has_temperatures && curve.temperature_K.has_value();
     unread += static_cast<int64_t>(curve.unread);
   }
@@ -336,6 +378,16 @@ std::vector<std::vector<size_t>> rows_of_sweeps(const LightRecording& recording)
     rows[place->second].push_back(i);
   }
   return rows;
+}
+
+// Numbers the curves of a file that states no numbers.
+void number_curves(LightRecording& recording) {
+  const std::vector<size_t> starts = starts_of_curves(recording.voltage_V);
+  for (size_t k = 1; k < starts.size(); ++k) {
+    const auto from = recording.sweep.begin() + static_cast<ptrdiff_t>(starts[k]);
+    std::fill(from, recording.sweep.end(), static_cast<int>(k));
+  }
+  recording.is_stacked = starts.size() > 1;
 }
 
 // Reverses and cleans each curve.
@@ -424,12 +476,18 @@ bool is_light_recording(const std::filesystem::path& path, const RecordingOption
   return light_kind_of(path, options).has_value();
 }
 
-std::vector<std::string> reversal_notes(const std::vector<LightRecording>& recordings) {
+std::vector<std::string> reading_notes(const std::vector<LightRecording>& recordings) {
   std::vector<std::string> notes;
   for (const LightRecording& recording : recordings) {
-    if (!recording.is_reversed) continue;
-    notes.push_back(std::filesystem::path(recording.name).filename().string() +
-                    ": currents are negative in light; counted the other way round");
+    const std::string name = std::filesystem::path(recording.name).filename().string();
+    if (recording.is_reversed) {
+      notes.push_back(name + ": currents are negative in light; counted the other way round");
+    }
+    if (recording.is_stacked) {
+      notes.push_back(name + ": the voltage returns in one step; read as " +
+                      std::to_string(rows_of_sweeps(recording).size()) +
+                      " curves, one below the other");
+    }
   }
   return notes;
 }
@@ -446,7 +504,10 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   }
   const std::optional<LightHeader>& header = beginning.header;
   if (!header) {
-    throw InputError({path.string()}, "header", "no line with the columns of a recording",
+    const std::string missing = joined_text(beginning.missing, ", ");
+    throw InputError({path.string()}, "header",
+                     missing.empty() ? "no line with the columns of a recording"
+                                     : "no column " + missing + " beside the others",
                      "u_m,v_m,irradiance_W_m2 (a scan), voltage_V,current_A (a sweep) or "
                      "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A (a run); other names by "
                      "[recording] columns = { voltage_V = \"NAME\", current_A = \"NAME\" }");
@@ -493,7 +554,10 @@ LightRecording read_light_recording(const std::filesystem::path& path,
                      "a lamp current above 0, or no such column");
   }
   make_relative(recording.lamp_light);
-  if (recording.kind == LightRecording::Kind::sweep) return with_clean_curves(std::move(recording));
+  if (recording.kind == LightRecording::Kind::sweep) {
+    if (!columns.sweep) number_curves(recording);
+    return with_clean_curves(std::move(recording));
+  }
   return recording;
 }
 

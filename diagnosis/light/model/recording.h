@@ -45,6 +45,8 @@ struct LightRecording {
   bool has_attitudes = true, has_temperatures = true;
   int64_t rows_read = 0;     // data rows in the file
   bool is_reversed = false;  // a current was counted into the module; it is positive here
+  bool is_stacked = false;   // several curves without numbers stand one below the other
+  bool is_density = false;   // its currents are those of 1 cm²
   std::map<std::string, int64_t> rejected;  // by reason: "torn row", "unreadable", …
   std::set<std::string> absent_columns;     // columns that are named but absent
   size_t rows() const { return lab_from_body.size(); }
@@ -72,8 +74,8 @@ std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& p
 // Whether a file has such a header. False for unreadable files.
 bool is_light_recording(const std::filesystem::path& path, const RecordingOptions& options = {});
 
-// One line per file with reversed currents.
-std::vector<std::string> reversal_notes(const std::vector<LightRecording>& recordings);
+// One line per file with reversed currents, and per file with curves one below the other.
+std::vector<std::string> reading_notes(const std::vector<LightRecording>& recordings);
 
 // Throws InputError with file and line without such a header or a usable row.
 LightRecording read_light_recording(const std::filesystem::path& path,

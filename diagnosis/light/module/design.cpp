@@ -246,7 +246,7 @@ ModuleDesign read_module(const Settings& root, const std::filesystem::path& fold
         throw s.error(module_key::reference_curve, "\"" + name + "\"",
                       "a file of voltage_V,current_A");
       }
-      std::ranges::move(reversal_notes({file}), std::back_inserter(design.notes));
+      std::ranges::move(reading_notes({file}), std::back_inserter(design.notes));
       for (LightRecording& curve : sweeps_of(file)) {
         design.references.push_back(std::move(curve));
         files.push_back(design.reference_files.size() - 1);

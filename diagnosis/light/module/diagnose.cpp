@@ -156,7 +156,10 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   read(recordings, data.train);
   read(holdouts, data.held);
   for (const auto* files : {&recordings, &holdouts}) {
-    for (std::string& note : reversal_notes(*files)) warnings.push_back(std::move(note));
+    for (std::string& note : reading_notes(*files)) {
+      // A recording may be its own reference.
+      if (std::ranges::find(warnings, note) == warnings.end()) warnings.push_back(std::move(note));
+    }
   }
   if (data.held.empty()) {
     for (ModuleRun& run : data.train) {

@@ -284,7 +284,9 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
   constexpr size_t fewest = 12;
   const double largest_A = all.current_A.empty() ? 0.0 : std::ranges::max(all.current_A);
   if (all.current_A.size() < fewest || !(largest_A > 0.0) || !(all.voltage_V.back() > 0.0)) {
-    throw InputError({recording.name}, "rows", std::to_string(all.current_A.size()) + " points",
+    throw InputError({recording.name}, "rows",
+                     std::to_string(all.current_A.size()) + " usable points in " +
+                         std::to_string(recording.rows_read) + " rows",
                      "a curve of at least 12 points with positive currents and voltages");
   }
   all.noise_A =

@@ -56,13 +56,26 @@ std::string with_overrides(const std::string& text, const std::vector<std::strin
   return document.text();
 }
 
+// Whether a recording is of light. For an experiment with a platform alone, a log of a machine with
+// its voltage and current is not.
+bool is_of_light(const fs::path& path, const RecordingOptions& reading, bool of_platform) {
+  if (!is_light_recording(path, reading)) return false;
+  if (!of_platform) return true;
+  try {
+    read_recording(path, reading);
+  } catch (const InputError&) {
+    return true;  // it has no time
+  }
+  return false;
+}
+
 // Whether the recordings are of light. Throws InputError for the first recording of another kind.
 bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs::path>& holdouts,
-                  const RecordingOptions& reading) {
-  const bool of_light = is_light_recording(recordings.front(), reading);
+                  const RecordingOptions& reading, bool of_platform) {
+  const bool of_light = is_of_light(recordings.front(), reading, of_platform);
   for (const auto* all : {&recordings, &holdouts}) {
     for (const fs::path& path : *all) {
-      if (!fs::exists(path) || is_light_recording(path, reading) == of_light) continue;
+      if (!fs::exists(path) || is_of_light(path, reading, of_platform) == of_light) continue;
       throw InputError({path.string()}, "",
                        of_light ? "no recording of light" : "a recording of light",
                        std::string(of_light ? "one" : "one of motion") + " as " +
@@ -293,7 +306,9 @@ DiagnosisRun run_diagnose(const RunOptions& options, const std::vector<fs::path>
     return diagnose_both(options, root, sorted, sorted_by_content(holdouts, reading), console);
   }
   // Without a platform the files must be of light: their reader reports other files.
-  return are_of_light(recordings, holdouts, reading) || (root.has("scene") && !root.has("platform"))
+  const bool of_platform = root.has("platform") && !root.has("scene");
+  return are_of_light(recordings, holdouts, reading, of_platform) ||
+                 (root.has("scene") && !root.has("platform"))
              ? diagnose_light_recordings(options, root, recordings, holdouts, console)
              : diagnose_motion(options, recordings, holdouts, console);
 }
