@@ -151,8 +151,8 @@ TEST(MovingMasses, SettingsNameAnySet) {
   const Settings usual = settings_of("moving_mass_kg = 0.25, lead_mm = 2");
   EXPECT_EQ(read_moving_masses(usual).size(), 8u);
   const Settings three = settings_of(
-      "{moving_mass_kg = 0.4, lead_m = 1e-3, step_angle_deg = 0.9, directions = [[2, 0, 0], [0, "
-      "1, 1], [0, 0, 1]]}");
+      "moving_mass_kg = 0.4, lead_m = 1e-3, step_angle_deg = 0.9, "
+      "directions = [[2, 0, 0], [0, 1, 1], [0, 0, 1]]");
   const std::vector<MovingMass> masses = read_moving_masses(three);
   ASSERT_EQ(masses.size(), 3u);
   EXPECT_NEAR(masses[1].direction_body.norm(), 1.0, 1e-15);
