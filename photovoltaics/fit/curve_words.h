@@ -36,7 +36,7 @@ Named named(std::string_view header_cell);
 // excluded.
 Named named_by_unit(std::string_view header_cell);
 
-// Whether a name is that of a current density: "J", "Jlight", "Stromdichte".
+// Whether a name is that of a current density, such as "J" or its word in another language.
 bool names_density(std::string_view header_cell);
 
 }  // namespace photorque::curve_text
