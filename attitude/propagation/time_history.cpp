@@ -131,9 +131,9 @@ Table event_table(const std::vector<Event>& events) {
   return table;
 }
 
-std::vector<double> torque_sizes(const Table& history, const std::string& label) {
+std::vector<double> torque_sizes(const Table& history, const std::string& stem) {
   const auto along = [&](const char* end) -> const std::vector<double>& {
-    return history.column("torque_" + label + end).values;
+    return history.column(stem + end).values;
   };
   const std::vector<double>&x = along("_x_N_m"), &y = along("_y_N_m"), &z = along("_z_N_m");
   std::vector<double> sizes(x.size());
@@ -243,7 +243,7 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
     const auto along = [&](char axis) -> const std::vector<double>& {
       return values("torque_" + label + "_" + axis + "_N_m");
     };
-    std::vector<double> size = torque_sizes(table_, label);
+    std::vector<double> size = torque_sizes(table_, "torque_" + label);
     if (!any_nonzero(size)) continue;
     largest_N_m = std::max(largest_N_m, *std::max_element(size.begin(), size.end()));
     shown.push_back(label);

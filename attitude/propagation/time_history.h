@@ -16,8 +16,9 @@ Plot::Curve thinned_curve(const std::vector<double>& x, const std::vector<double
 // The table "events".
 Table event_table(const std::vector<Event>& events);
 
-// Magnitudes of the torque of a disturbance in the rows of the table "time_history".
-std::vector<double> torque_sizes(const Table& history, const std::string& label);
+// Magnitudes of a torque in the rows of the table "time_history", from its columns STEM_x_N_m to
+// STEM_z_N_m.
+std::vector<double> torque_sizes(const Table& history, const std::string& stem);
 
 class TimeHistory {
  public:

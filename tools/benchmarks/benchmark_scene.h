@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/errors.h"
 #include "raytrace/scene.h"
 #include "sources/lamps/kind.h"
 
@@ -49,7 +49,7 @@ inline std::vector<Beam> make_beams(const std::string& kind, SettingsNode::Table
   for (const SourceKind& known : all_source_kinds()) {
     if (known.name == kind) return known.make(Settings(SettingsNode{std::move(keys)}), context);
   }
-  throw std::logic_error("no source kind " + kind);
+  throw InputError({}, "kind", kind, "a kind of source");
 }
 
 inline SettingsNode vector_node(const Vec3& v) {

@@ -58,7 +58,7 @@ Plot together(const Table& power, const Table& history) {
   add("cells [K]", t, power.column("cell_temperature_K").values);
   add("tilt [deg]", moved, history.column("tilt_deg").values);
   if (history.find("torque_radiation_pressure_x_N_m") != nullptr) {
-    add("light [N m]", moved, torque_sizes(history, "radiation_pressure"));
+    add("light [N m]", moved, torque_sizes(history, "torque_radiation_pressure"));
   }
   return plot;
 }
