@@ -82,7 +82,8 @@ double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
     scale.neighbours = std::clamp(longest / fewest_means, size_t{1}, limits.neighbours);
     const double structure = std::max(inference::whiteness(channels, limits).excess_sigma,
                                       inference::whiteness(channels, scale).excess_sigma);
-    return std::max(structure, inference::size_excess_sigma(channels, thresholds.held_out.max_noise));
+    return std::max(structure,
+                    inference::size_excess_sigma(channels, thresholds.held_out.max_noise));
   } catch (const NumericalError&) {
     return limits.excess_unknown;
   }
