@@ -48,8 +48,7 @@ std::vector<inference::ChannelResiduals> channels_of(const std::vector<Predictio
 // Significance of the residual structure of a fit, in standard deviations: of means of neighbouring
 // residuals, and of the χ² per reading above `limits.held_out.max_noise`.
 // `limits.noise.excess_unknown` if the fit cannot be propagated.
-double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
-                    const Thresholds& limits);
+double excess_sigma(const Fit& fit, const std::vector<Observation>& runs, const Thresholds& limits);
 
 // Drops the reading of a channel in a block; those of an attitude are dropped together.
 void drop_reading(int channel, size_t block, Observation& seen);

@@ -218,8 +218,8 @@ struct Thresholds {
     double doubtful_prior_sigma = 3.0, contradicted_prior_sigma = 5.0;
     // Minimum probability of reported names or of effects indistinguishable from them.
     double min_probability = 0.7;
-    // Minimum probability, among the significant explanations, that nothing is missing. Below it the
-    // data are unexplained, even if no name passes.
+    // Minimum probability, among the significant explanations, that nothing is missing. Below it
+    // the data are unexplained, even if no name passes.
     double min_probability_of_nothing = 1e-3;
     // Residual structure [sigma] above which the best physics is insufficient; minimum confidence
     // of the verdict "unexplained" in that case.
