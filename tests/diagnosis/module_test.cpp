@@ -187,6 +187,44 @@ TEST(ModuleDiagnosis, NamesACellInTheShadeAndItsLight) {
   EXPECT_LT(d.holdout->rms_after.at("current_A"), 4e-3);
 }
 
+// A curve with a step is not a module before a fault: an equal curve does not show that nothing is
+// missing.
+TEST(ModuleDiagnosis, FindsNothingConsistentWithAReferenceThatIsNoDiode) {
+  Network stepped(6);
+  for (size_t i = 0; i < 6; ++i) stepped.light_A[i] *= 0.4;
+  ModuleDesign design = design_with_reference();
+  design.references = {measured(stepped.curve(), 1)};
+  const Diagnosis d = diagnose_module(design, {measured(stepped.curve(), 2)}, {});
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+  EXPECT_THAT(d.sentence, testing::HasSubstr("one diode describes the reference only to"));
+}
+
+// Eight points to 16 % beyond open circuit, with 5 mV of noise, change the current by up to 15 A.
+TEST(ModuleDiagnosis, LeavesPointsFarBeyondOpenCircuitOut) {
+  const ArrayCurve curve = Network(0).curve();
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise_V(0.0, 5e-3);
+  const auto overdriven = [&](unsigned seed) {
+    LightRecording r = measured(curve, seed);
+    for (int i = 1; i <= 8; ++i) {
+      const double V = curve.open_circuit_V() * (1.0 + 0.02 * i);
+      r.voltage_V.push_back(V + noise_V(random));
+      r.current_A.push_back(curve.current_A(V));
+      r.temperature_K.push_back(298.15);
+      r.lab_from_body.push_back(Quat::Identity());
+      r.sweep.push_back(0);
+    }
+    r.rows_read = 158;
+    return r;
+  };
+  ModuleDesign design = design_with_reference();
+  design.references = {overdriven(1)};
+  const Diagnosis d = diagnose_module(design, {overdriven(2)}, {});
+  EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
+  EXPECT_EQ(d.data.used, 150);
+  EXPECT_EQ(d.data.rejected.at("beyond_open_circuit"), 8);
+}
+
 // 25 K above a stated temperature that is known to 20 K and equals the reference's. Ideality and
 // resistance follow powers of the temperature as in pvlib's healthy module (nominal.cpp), and half
 // of these powers. Once the first was not explained, and the second took cells for cracked ones.

@@ -84,9 +84,9 @@ void require_curve(const LightRecording& recording) {
 ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const ModuleNominal& nominal,
                  DataQuality& quality) {
   constexpr size_t max_points = 160;  // longer curves are thinned
-  int64_t dropped = 0;
+  std::map<std::string, int64_t> rejected;
   require_current_forward(r);
-  ModuleRun run{module_sweep(r, design, max_points, &dropped)};
+  ModuleRun run{module_sweep(r, design, max_points, &rejected)};
   run.sweep.temperature_K = r.has_temperatures ? median_of(r.temperature_K) : design.temperature_K;
   run.irradiance_W_m2 = median_of(r.irradiance_W_m2);
   require_plausible(run.sweep, design, nominal);
@@ -94,10 +94,13 @@ ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const Modu
   run.sigma_A = point_sigma_A(nominal, run.sweep);
   quality.rows += r.rows_read;
   for (const auto& [reason, count] : r.rejected) quality.rejected[reason] += count;
-  if (dropped > 0) quality.rejected["outlier"] += dropped;
-  quality.used += static_cast<int64_t>(run.sweep.voltage_V.size());
-  const auto left =
-      static_cast<int64_t>(r.rows()) - dropped - static_cast<int64_t>(run.sweep.voltage_V.size());
+  const auto used = static_cast<int64_t>(run.sweep.voltage_V.size());
+  int64_t left = static_cast<int64_t>(r.rows()) - used;
+  for (const auto& [reason, count] : rejected) {
+    quality.rejected[reason] += count;
+    left -= count;
+  }
+  quality.used += used;
   if (left > 0) quality.rejected["thinning"] += left;
   return run;
 }

@@ -271,7 +271,10 @@ ModuleSweep ModuleSweep::selected(const std::function<bool(size_t point)>& keeps
 }
 
 ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& design,
-                         size_t max_rows, int64_t* dropped) {
+                         size_t max_rows, std::map<std::string, int64_t>* rejected) {
+  const auto reject = [&](const char* reason) {
+    if (rejected != nullptr) ++(*rejected)[reason];
+  };
   const std::vector<size_t> order = sorted_indices(recording.rows(), [&](size_t a, size_t b) {
     return recording.voltage_V[a] < recording.voltage_V[b];
   });
@@ -281,8 +284,15 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
     all.voltage_V.push_back(recording.voltage_V[i]);
     all.current_A.push_back(recording.current_A[i]);
   }
-  constexpr size_t fewest = 12;
   const double largest_A = all.current_A.empty() ? 0.0 : std::ranges::max(all.current_A);
+  // Beyond open circuit a millivolt changes the current by more than all errors of a current.
+  constexpr double reverse = 0.05;
+  all = all.selected([&](size_t i) {
+    const bool is_kept = all.voltage_V[i] <= 0.0 || all.current_A[i] > -reverse * largest_A;
+    if (!is_kept) reject("beyond_open_circuit");
+    return is_kept;
+  });
+  constexpr size_t fewest = 12;
   if (all.current_A.size() < fewest || !(largest_A > 0.0) || !(all.voltage_V.back() > 0.0)) {
     throw InputError({recording.name}, "rows",
                      std::to_string(all.current_A.size()) + " usable points in " +
@@ -297,7 +307,7 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
     if (i == 0 || i + 1 == all.current_A.size()) return true;
     const auto [low, high] = std::minmax(all.current_A[i - 1], all.current_A[i + 1]);
     const bool is_outlier = all.current_A[i] < low - limit_A || all.current_A[i] > high + limit_A;
-    if (is_outlier && dropped != nullptr) ++*dropped;
+    if (is_outlier) reject("outlier");
     return !is_outlier;
   });
   const size_t every = (good.current_A.size() + max_rows - 1) / max_rows;

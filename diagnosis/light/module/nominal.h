@@ -2,7 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "diagnosis/light/module/curve.h"
 #include "diagnosis/light/module/design.h"
@@ -21,10 +25,11 @@ struct ModuleSweep {
   ModuleSweep selected(const std::function<bool(size_t point)>& keeps) const;
 };
 
-// Thins a sweep to at most `max_rows` points by voltage and removes outliers. Throws InputError for
-// fewer than 12 points or no current.
+// Thins a sweep to at most `max_rows` points by voltage. Removes outliers, and points beyond open
+// circuit with a reverse current above 5 % of the largest current; `rejected` counts both. Throws
+// InputError for fewer than 12 points or no current.
 ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& design,
-                         size_t max_rows, int64_t* dropped);
+                         size_t max_rows, std::map<std::string, int64_t>* rejected);
 
 struct ModuleNominal {
   ModuleCell cell;

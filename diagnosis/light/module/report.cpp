@@ -187,6 +187,8 @@ RecordingSeries curve_of(const ModuleFitter& fitter, const ModuleAnswer& answer,
 // (curves of docs/real_light.md and published measurements). With a shaded cell or a step the
 // misfit is 0.8 % and more.
 constexpr double even_misfit = 7e-3;
+// Limit of the misfit of a reference against which a recording counts as unchanged.
+constexpr double unusable_misfit = 2e-2;
 
 // Whether a curve is both a reference and a recording. Its deviation from one diode would then
 // count as noise, so that no effect would be found.
@@ -418,22 +420,27 @@ void judge_references(const ModuleDesign& design, const ModuleNominal& nominal,
                       const std::vector<LightRecording>& recordings, Diagnosis& d) {
   const bool own = is_its_own_reference(design, recordings);
   const bool uneven = !design.references.empty() && nominal.misfit > even_misfit;
-  const std::string percent = printed("%.2g %%", 100.0 * nominal.misfit);
   if (uneven) {
-    d.warnings.push_back("one diode leaves " + percent +
-                         " of the short-circuit current of the reference itself, where even light "
-                         "on like cells leaves 0.1 to 0.5 %: part of it may be shaded or damaged, "
-                         "and what the recordings share with it cannot be found");
+    d.warnings.push_back(printed(
+        "one diode leaves %.2g %% of the short-circuit current of the reference itself, where even "
+        "light on like cells leaves 0.1 to 0.5 %%: part of it may be shaded or damaged, and what "
+        "the recordings share with it cannot be found",
+        100.0 * nominal.misfit));
   }
   if (own) {
     d.warnings.push_back(
         "a recording is its own reference: what one diode cannot describe counts as noise, so that "
         "only another curve or a datasheet can show missing effects");
   }
-  if (!own || !uneven || d.verdict != Verdict::consistent) return;
+  const double limit = own ? even_misfit : unusable_misfit;
+  const bool is_described = design.references.empty() || nominal.misfit <= limit;
+  if (is_described || d.verdict != Verdict::consistent) return;
   d.verdict = Verdict::unexplained;
-  d.because = "the curve is its own reference, and one diode describes it only to " + percent +
-              " of its short-circuit current";
+  d.because = own ? "the curve is its own reference, and one diode" : "one diode";
+  d.because += nominal.misfit < 1.0
+                   ? printed(" describes %s only to %.2g %% of its short-circuit current",
+                             own ? "it" : "the reference", 100.0 * nominal.misfit)
+                   : printed(" does not describe %s", own ? "it" : "the reference");
 }
 
 }  // namespace photorque
