@@ -126,6 +126,24 @@ void report_gains_over_segments(const Answer& answer, Diagnosis& d) {
                        joined_text(answer.beside->tied, "; or "));
 }
 
+// Adds the meaning of forces and torques of a platform whose mass and inertia are one.
+void explain_unit_inertia(const Platform& platform, Diagnosis& d) {
+  const bool has_torque = std::ranges::any_of(d.effects, [](const FoundEffect& effect) {
+    return std::ranges::any_of(effect.parameters, [](const FittedParameter& p) {
+      return p.key.find("_N") != std::string::npos;
+    });
+  });
+  if (!has_torque || !platform.turns_about_one_axis()) return;
+  if (platform.slides() ? platform.mass_kg != 1.0 : platform.inertia_kg_m2 != Mat3::Identity()) {
+    return;
+  }
+  d.warnings.emplace_back(
+      platform.slides()
+          ? "the mass is 1 kg: a force in N is also an acceleration in m/s²"
+          : "the moment of inertia is 1 kg m²: a torque in N m is also an angular acceleration "
+            "in rad/s²");
+}
+
 // Adds a warning if held-out data do not test the names or scatter less than the noise.
 void warn_of_weak_holdout(Diagnosis& d) {
   constexpr double as_well = inference::GateLimits{}.max_untested_fraction, too_quiet_sigma = -5.0;
@@ -229,6 +247,7 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   d.warnings = warnings_of(data, answer.decision);
   report_gains_over_segments(answer, d);
   warn_of_weak_holdout(d);
+  explain_unit_inertia(stated.model.platform, d);
   for (const std::string& text : contradicted_priors(answer.chosen(), options.limits.decision)) {
     d.warnings.push_back(text);
   }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "attitude/disturbances/kind.h"
+#include "core/constants.h"
 #include "core/text/format.h"
 #include "diagnosis/attitude/empirical_torque.h"
 
@@ -200,6 +201,24 @@ std::vector<FittedParameter> initial_states(const Trial& t, size_t disturbance) 
   return result;
 }
 
+// The explanation of an effect. About a single axis, unbalance is stated as the frequency of the
+// pendulum that it makes, √(m g r / I) / 2π with g and r perpendicular to the axis.
+std::string explanation_of(const Candidate& c, const Trial& chosen, size_t disturbance) {
+  const AttitudeModel& model = chosen.fit.best.model;
+  if (c.effect.kind != "static_unbalance" || model.platform.topology != Topology::one_axis) {
+    return c.effect.explanation;
+  }
+  const Vec3& axis = model.platform.axis;
+  const Parameters& offset = model.disturbances[disturbance].parameters;
+  const Vec3 r_m(offset[0].value, offset[1].value, offset[2].value);
+  const double stiffness_N_m = model.platform.mass_kg *
+                               axis.cross(model.environment.gravity_lab_m_s2).norm() *
+                               axis.cross(r_m).norm();
+  const double inertia_kg_m2 = axis.dot(model.platform.inertia_kg_m2 * axis);
+  return "the centre of mass is beside the axis, as in a pendulum that swings at " +
+         readable_number(std::sqrt(stiffness_N_m / inertia_kg_m2) / (2.0 * pi), 3) + " Hz";
+}
+
 }  // namespace
 
 std::vector<FoundEffect> found_effects(const inference::Decision& decision,
@@ -211,7 +230,7 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
     if (c.empirical()) continue;
     FoundEffect effect;
     effect.kind = c.effect.kind;
-    effect.explanation = c.effect.explanation;
+    effect.explanation = explanation_of(c, chosen, chosen.disturbances[i]);
     effect.parameters = fitted_parameters(chosen, chosen.disturbances[i]);
     keep_within_bounds(c, effect.parameters);
     effect.known_together = combinations(chosen, chosen.disturbances[i]);

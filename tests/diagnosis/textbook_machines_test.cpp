@@ -267,6 +267,8 @@ TEST(TextbookMachines, APendulumByItsRateAlone) {
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("static_unbalance", "bearing_drag")) << d.sentence;
   expect_number(d, "static_unbalance", "offset_m", 2, -k / 9.80665);
   expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
+  EXPECT_THAT(d.sentence, HasSubstr("a pendulum that swings at 0.48"));  // √9.1 / 2π Hz
+  EXPECT_THAT(d.warnings, Contains(HasSubstr("also an angular acceleration in rad/s²")));
 }
 
 // A rate that is computed from the angle adds no information; a rate with independent errors does.
