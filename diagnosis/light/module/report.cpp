@@ -12,8 +12,9 @@
 namespace photorque {
 namespace {
 
-double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t trial,
-                  const ModuleData& data) {
+// Root mean square difference [A] of the held-out points from the curves of a trial.
+double held_out_rms_A(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t trial,
+                      const ModuleData& data) {
   double squares = 0.0, points = 0.0;
   for (size_t run = 0; run < data.held.size(); ++run) {
     const ModuleSweep& sweep = data.held[run].sweep;
@@ -291,8 +292,8 @@ Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
   held.chi2_per_sample_before = answer.trials.front().predictive->chi2_per_sample;
   held.chi2_per_sample_after = answer.trials[chosen].predictive->chi2_per_sample;
   held.predictive = answer.trials[chosen].predictive;
-  held.rms_before["current_A"] = squares_of(fitter, answer, 0, data);
-  held.rms_after["current_A"] = squares_of(fitter, answer, chosen, data);
+  held.rms_before["current_A"] = held_out_rms_A(fitter, answer, 0, data);
+  held.rms_after["current_A"] = held_out_rms_A(fitter, answer, chosen, data);
   held.explained_fraction =
       explained_fraction(held.chi2_per_sample_before, held.chi2_per_sample_after, held.samples);
   d.holdout = held;
