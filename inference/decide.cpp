@@ -14,6 +14,157 @@ class Judge {
         const Checks& checks, const Thresholds::Decision& limits)
       : trials_(trials), all_(all), checks_(checks), limits_(limits) {}
 
+  Decision decide() const {
+    std::vector<std::optional<double>> gains;
+    std::set<std::string> unneeded;
+    const size_t empirical = best(true);
+    // Gates (b) and (c) of decide.h.
+    const size_t named = needed_by_segments(pruned(best(false)), gains, unneeded);
+    Decision d;
+    d.probability = posterior();
+    d.best_named = d.chosen = named;
+    // Gate (d).
+    const bool only_empirical =
+        empirical != 0 &&
+        trials_[empirical].log_evidence > trials_[named].log_evidence + limits_.min_log_odds;
+    const bool leaves_structure = checks_.excess_sigma(named) > limits_.max_excess_sigma;
+    const bool is_predictive = predicts(named);
+    if (only_empirical || leaves_structure || !is_predictive) {
+      d.verdict = Verdict::unexplained;
+      d.because = only_empirical     ? "a smooth law without physics explains the recording better"
+                  : leaves_structure ? "the best known physics leaves structure in the recording"
+                                     : "the best known physics does not predict the held-out data";
+      d.leaves_more = true;
+      if (only_empirical) choose_empirical(empirical, d);
+      d.confidence = probability_of(d, [&](size_t i) { return is_empirical(i); });
+      if (leaves_structure || !is_predictive) {
+        d.confidence = std::max(d.confidence, limits_.structure_confidence);
+      }
+    } else if (named == 0) {
+      judge_nothing(unneeded, d);
+    } else {
+      choose_names(std::move(gains), d);
+    }
+    return d;
+  }
+
+ private:
+  // Chooses the empirical trial, and the effect that is certain beside its law.
+  void choose_empirical(size_t empirical, Decision& d) const {
+    d.chosen = empirical;
+    d.leaves_more = !predicts(empirical) ||
+                    !lowers_held_out(empirical, limits_.max_held_out_fraction) ||
+                    !(checks_.excess_sigma(empirical) < limits_.max_excess_sigma);
+    if (!d.leaves_more) d.beside_law = indispensable(empirical);
+    // The empirical law is an approximation: several effects together may only absorb its residual.
+    if (d.beside_law.size() > 1) d.beside_law.clear();
+    std::erase_if(d.beside_law,
+                  [&](size_t c) { return !is_clear(trials_[empirical], c, limits_); });
+  }
+
+  // No name passes. Rivals of the nominal model are explanations that are more likely and in which
+  // every name improves the prediction. The number of unlikely explanations therefore has no
+  // influence.
+  void judge_nothing(const std::set<std::string>& unneeded, Decision& d) const {
+    const double rivals = probability_of(d, [&](size_t i) {
+      const bool predicts_nothing =
+          std::ranges::any_of(unneeded, [&](const std::string& name) { return has_name(i, name); });
+      return d.probability[i] > d.probability.front() && !predicts_nothing;
+    });
+    const double nothing = d.probability.front() + rivals;
+    d.confidence = nothing > 0.0 ? d.probability.front() / nothing : 1.0;
+    if (d.confidence >= limits_.min_probability_of_nothing) return;
+    d.verdict = Verdict::unexplained;
+    d.because = "no explanation of the misfit predicts the held-out data";
+    d.leaves_more = true;
+    d.confidence = 1.0 - d.confidence;
+  }
+
+  // Gate (a). Trials that contain the same names, in any parametrisation, count together.
+  void choose_names(std::vector<std::optional<double>> gains, Decision& d) const {
+    const size_t named = d.best_named;
+    const auto probability_of_all = [&](size_t trial) {
+      return probability_of(d, [&](size_t i) { return has_names_of(trial, i); });
+    };
+    const auto is_probable = [&](size_t c) {
+      return probability_of(d, [&](size_t i) { return has_name(i, all_[c].name); }) >=
+             limits_.min_probability;
+    };
+    d.confidence = probability_of_all(named);
+    const double of_group = probability_of(
+        d, [&](size_t i) { return has_names_of(named, i) || exchanges_one(named, i); });
+    // Weak: not probable enough, and not significant in the fitted recordings alone.
+    const bool is_weak = d.confidence < limits_.min_probability &&
+                         !inference::is_significant(trials_[named].significance, limits_);
+    d.undecided = is_weak && predicts(0);
+    if (d.undecided) {
+      d.chosen = 0;
+      d.confidence = 1.0 - d.confidence;
+      return;
+    }
+    if (is_weak || of_group < limits_.min_probability) {
+      // Another effect acts in addition to the probable names, but several effects are about
+      // equally likely. If the probable names alone explain the recordings, they are named.
+      d.chosen = part_of(named, is_probable);
+      if (d.chosen == 0 || !predicts(d.chosen) ||
+          checks_.excess_sigma(d.chosen) > limits_.max_excess_sigma) {
+        d.verdict = Verdict::unexplained;
+        d.because = "several explanations are about as likely";
+        d.chosen = named;
+        d.confidence = 1.0 - d.confidence;
+        for (const size_t c : trials_[named].candidates) {
+          if (!is_weak && is_probable(c)) d.beside_law.push_back(c);
+        }
+        return;
+      }
+      gains.clear();
+      d.confidence = probability_of_all(d.chosen);
+    }
+    d.verdict = Verdict::missing_physics;
+    add_names(gains, d);
+  }
+
+  // Gates (e) and (f). `gains`: one per name, or none.
+  void add_names(const std::vector<std::optional<double>>& gains, Decision& d) const {
+    d.held_out_tests_names = lowers_held_out(d.chosen, checks_.limits.max_untested_fraction);
+    for (size_t which = 0; which < trials_[d.chosen].candidates.size(); ++which) {
+      Name name{trials_[d.chosen].candidates[which]};
+      name.probability = probability_of(d, [&](size_t i) {
+        return has_name(i, all_[name.candidate].name) || exchanges(d.chosen, which, i);
+      });
+      if (which < gains.size()) name.gain_sigma = gains[which];
+      name.equal_places = equal_places(d.chosen, which);
+      d.names.push_back(std::move(name));
+    }
+  }
+
+  // Posterior probability of each trial. It is 0 for unphysical trials and for trials with a
+  // candidate that does not differ significantly from zero.
+  std::vector<double> posterior() const {
+    const auto counts = [&](size_t i) { return trials_[i].objection.empty() && is_significant(i); };
+    double best = -1e300;
+    for (size_t i = 0; i < trials_.size(); ++i) {
+      if (counts(i)) best = std::max(best, trials_[i].log_evidence);
+    }
+    std::vector<double> p;
+    double sum = 0.0;
+    for (size_t i = 0; i < trials_.size(); ++i) {
+      p.push_back(counts(i) ? std::exp(trials_[i].log_evidence - best) : 0.0);
+      sum += p.back();
+    }
+    for (double& x : p) x /= sum;
+    return p;
+  }
+
+  // Total probability of the trials for which `counts` is true.
+  static double probability_of(const Decision& d, const std::function<bool(size_t)>& counts) {
+    double sum = 0.0;
+    for (size_t i = 0; i < d.probability.size(); ++i) {
+      if (counts(i)) sum += d.probability[i];
+    }
+    return std::min(1.0, sum);  // rounding can exceed 1
+  }
+
   bool is_empirical(size_t trial) const { return has_empirical(trials_[trial].candidates, all_); }
 
   bool is_significant(size_t trial) const {
@@ -155,7 +306,6 @@ class Judge {
     return names;
   }
 
- private:
   // The best trial with the same names except the one at `which`; the nominal model if there is
   // none.
   size_t without(size_t trial, size_t which) const {
@@ -229,36 +379,6 @@ class Judge {
   const Thresholds::Decision& limits_;
 };
 
-// Posterior probability of each trial. It is 0 for unphysical trials and for trials with a
-// candidate that does not differ significantly from zero.
-std::vector<double> posterior(const std::vector<Explanation>& trials, const Judge& judge) {
-  const auto counts = [&](size_t i) {
-    return trials[i].objection.empty() && judge.is_significant(i);
-  };
-  double best = -1e300;
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (counts(i)) best = std::max(best, trials[i].log_evidence);
-  }
-  std::vector<double> p;
-  double sum = 0.0;
-  for (size_t i = 0; i < trials.size(); ++i) {
-    p.push_back(counts(i) ? std::exp(trials[i].log_evidence - best) : 0.0);
-    sum += p.back();
-  }
-  for (double& x : p) x /= sum;
-  return p;
-}
-
-// Total probability of the trials for which `counts` is true.
-double probability_of(const std::vector<double>& probability,
-                      const std::function<bool(size_t)>& counts) {
-  double sum = 0.0;
-  for (size_t i = 0; i < probability.size(); ++i) {
-    if (counts(i)) sum += probability[i];
-  }
-  return std::min(1.0, sum);  // rounding can exceed 1
-}
-
 }  // namespace
 
 bool is_significant(const std::vector<double>& significance, const Thresholds::Decision& limits) {
@@ -282,113 +402,7 @@ bool is_clear(const Explanation& trial, size_t candidate, const Thresholds::Deci
 
 Decision decide(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
                 const Checks& checks, const Thresholds::Decision& limits) {
-  const Judge judge(trials, all, checks, limits);
-  const size_t empirical = judge.best(true);
-  std::vector<std::optional<double>> gains;
-  std::set<std::string> unneeded;
-  // Gates (b) and (c) of decide.h.
-  const size_t named = judge.needed_by_segments(judge.pruned(judge.best(false)), gains, unneeded);
-  Decision d;
-  d.probability = posterior(trials, judge);
-  d.best_named = named;
-  const bool only_empirical =
-      empirical != 0 &&
-      trials[empirical].log_evidence > trials[named].log_evidence + limits.min_log_odds;
-  // Gate (d) of decide.h.
-  const bool structure_left = checks.excess_sigma(named) > limits.max_excess_sigma;
-  const bool predicts = judge.predicts(named);
-  if (only_empirical || structure_left || !predicts) {
-    d.verdict = Verdict::unexplained;
-    d.because = only_empirical   ? "a smooth law without physics explains the recording better"
-                : structure_left ? "the best known physics leaves structure in the recording"
-                                 : "the best known physics does not predict the held-out data";
-    d.chosen = only_empirical ? empirical : named;
-    const bool law_does = only_empirical && judge.predicts(empirical) &&
-                          judge.lowers_held_out(empirical, limits.max_held_out_fraction) &&
-                          checks.excess_sigma(empirical) < limits.max_excess_sigma;
-    d.leaves_more = !law_does;
-    if (law_does) d.beside_law = judge.indispensable(empirical);
-    // The empirical law is an approximation: several effects together may only absorb its residual.
-    if (d.beside_law.size() > 1) d.beside_law.clear();
-    std::erase_if(d.beside_law, [&](size_t c) { return !is_clear(trials[empirical], c, limits); });
-    d.confidence = probability_of(d.probability, [&](size_t i) { return judge.is_empirical(i); });
-    if (structure_left || !predicts) {
-      d.confidence = std::max(d.confidence, limits.structure_confidence);
-    }
-    return d;
-  }
-  if (named == 0) {
-    // Rivals are explanations that are more likely than the nominal model and in which every name
-    // improves the prediction. The number of unlikely explanations therefore has no influence.
-    const double rivals = probability_of(d.probability, [&](size_t i) {
-      const bool predicts_nothing = std::ranges::any_of(
-          unneeded, [&](const std::string& name) { return judge.has_name(i, name); });
-      return d.probability[i] > d.probability.front() && !predicts_nothing;
-    });
-    const double nothing = d.probability.front() + rivals;
-    d.confidence = nothing > 0.0 ? d.probability.front() / nothing : 1.0;
-    if (d.confidence < limits.min_probability_of_nothing) {
-      d.verdict = Verdict::unexplained;
-      d.because = "no explanation of the misfit predicts the held-out data";
-      d.leaves_more = true;
-      d.confidence = 1.0 - d.confidence;
-    }
-    return d;
-  }
-  // Gate (a) of decide.h. Trials that contain the same names, in any parametrisation, count
-  // together.
-  const auto probability_of_all = [&](size_t trial) {
-    return probability_of(d.probability, [&](size_t i) { return judge.has_names_of(trial, i); });
-  };
-  const auto acts = [&](size_t c) {
-    return probability_of(d.probability, [&](size_t i) { return judge.has_name(i, all[c].name); });
-  };
-  d.confidence = probability_of_all(named);
-  const double of_group = probability_of(d.probability, [&](size_t i) {
-    return judge.has_names_of(named, i) || judge.exchanges_one(named, i);
-  });
-  const bool is_likely = of_group >= limits.min_probability;
-  // Weak: not probable enough, and not significant in the fitted recordings alone.
-  const bool is_weak =
-      d.confidence < limits.min_probability && !is_significant(trials[named].significance, limits);
-  d.undecided = is_weak && judge.predicts(0);
-  d.chosen = named;
-  if (d.undecided) {
-    d.chosen = 0;
-    d.confidence = 1.0 - d.confidence;
-    return d;
-  }
-  if (is_weak || !is_likely) {
-    // Another effect acts in addition to the probable names, but several effects are about equally
-    // likely. If the probable names alone explain the recordings, they are named.
-    d.chosen = judge.part_of(named, [&](size_t c) { return acts(c) >= limits.min_probability; });
-    if (d.chosen == 0 || !judge.predicts(d.chosen) ||
-        checks.excess_sigma(d.chosen) > limits.max_excess_sigma) {
-      d.verdict = Verdict::unexplained;
-      d.because = "several explanations are about as likely";
-      d.chosen = named;
-      d.confidence = 1.0 - d.confidence;
-      for (const size_t c : trials[named].candidates) {
-        if (!is_weak && acts(c) >= limits.min_probability) d.beside_law.push_back(c);
-      }
-      return d;
-    }
-    gains.clear();
-    d.confidence = probability_of_all(d.chosen);
-  }
-  d.verdict = Verdict::missing_physics;
-  // Gate (e).
-  d.held_out_tests_names = judge.lowers_held_out(d.chosen, checks.limits.max_untested_fraction);
-  for (size_t which = 0; which < trials[d.chosen].candidates.size(); ++which) {
-    Name name{trials[d.chosen].candidates[which]};
-    name.probability = probability_of(d.probability, [&](size_t i) {
-      return judge.has_name(i, all[name.candidate].name) || judge.exchanges(d.chosen, which, i);
-    });
-    if (which < gains.size()) name.gain_sigma = gains[which];
-    name.equal_places = judge.equal_places(d.chosen, which);  // gate (f)
-    d.names.push_back(std::move(name));
-  }
-  return d;
+  return Judge(trials, all, checks, limits).decide();
 }
 
 }  // namespace photorque::inference

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "attitude/estimation/axis_readings.h"
 #include "attitude/estimation/rates_of_angles.h"
@@ -134,6 +135,35 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   return kinks;
 }
 
+// Rows from `first` to before `last` in which the rotation about the only axis follows one law. The
+// reasons for leaving out the others are added to `exclusions`.
+std::pair<size_t, size_t> rows_of_one_law(const Observation& rows, const Vec3& axis, size_t first,
+                                          size_t last, std::vector<std::string>& exclusions) {
+  const auto start_at = [&](size_t row, const std::string& reason) {
+    if (row > first) {
+      exclusions.push_back("until " + readable_number(rows.time_s[row], 4) + " s " + reason);
+    }
+    first = row;
+  };
+  const bool is_driven = is_commanded(rows.schedule);
+  if (!is_driven) {
+    start_at(start_of_motion(rows, axis, first, last),
+             "it rests and then sets off at once: a drive or a hand begins to act");
+  }
+  if (rows.has_gyro) {
+    ConsistentSegment lawful = consistent_segment(rows, axis, first, last);
+    first = lawful.first;
+    last = lawful.last;
+    if (!lawful.left_out.empty()) exclusions.push_back(std::move(lawful.left_out));
+  }
+  if (rows.has_some_attitude() && !is_driven) {
+    start_at(released_at(rows, axis, first, last),
+             "the angle does not follow the law of the rest: a hand holds it, or something else "
+             "acts");
+  }
+  return {first, last};
+}
+
 Segments cut(const Recording& recording, const std::string& name, const Platform& platform,
              size_t max_blocks) {
   Observation rows = observe(recording, name, platform, std::numeric_limits<size_t>::max());
@@ -159,31 +189,8 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
   const auto close = [&](size_t end) {
     if (end == first) return;
     size_t last = end;
-    if (turns_alone && !is_commanded(rows.schedule)) {
-      const size_t sets_off = start_of_motion(rows, platform.axis, first, last);
-      if (sets_off > first) {
-        result.exclusions.push_back(
-            "until " + readable_number(rows.time_s[sets_off], 4) +
-            " s it rests and then sets off at once: a drive or a hand begins "
-            "to act");
-      }
-      first = sets_off;
-    }
-    if (turns_alone && rows.has_gyro) {
-      ConsistentSegment lawful = consistent_segment(rows, platform.axis, first, last);
-      first = lawful.first;
-      last = lawful.last;
-      if (!lawful.left_out.empty()) result.exclusions.push_back(std::move(lawful.left_out));
-    }
-    if (turns_alone && rows.has_some_attitude() && !is_commanded(rows.schedule)) {
-      const size_t released = released_at(rows, platform.axis, first, last);
-      if (released > first) {
-        result.exclusions.push_back(
-            "until " + readable_number(rows.time_s[released], 4) +
-            " s the angle does not follow the law of the rest: a hand holds "
-            "it, or something else acts");
-      }
-      first = released;
+    if (turns_alone) {
+      std::tie(first, last) = rows_of_one_law(rows, platform.axis, first, end, result.exclusions);
     }
     if (last > first && rows.readings(first, last) >= min_readings) {
       const auto blocks = static_cast<size_t>(blocks_per_row * static_cast<double>(last - first));

@@ -8,6 +8,20 @@
 #include "core/numerics/order.h"
 
 namespace photorque {
+namespace {
+
+// The readings in order of time. Images from before `first_s` are assigned to `first_s`.
+std::vector<Reading> in_time(const std::vector<Reading>& all, double first_s) {
+  std::vector<Reading> sorted;
+  for (const size_t i : sorted_indices(
+           all.size(), [&](size_t a, size_t b) { return all[a].time_s < all[b].time_s; })) {
+    sorted.push_back(all[i]);
+    sorted.back().time_s = std::max(sorted.back().time_s, first_s);
+  }
+  return sorted;
+}
+
+}  // namespace
 
 Readings readings_of(const Recording& recording, const std::string& name, const Platform& platform,
                      double camera_delay_s) {
@@ -67,15 +81,7 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
     throw InputError({name, 0}, columns.first_name(), "no number in any row",
                      "attitudes of unit norm, or rates");
   }
-  std::vector<Reading> in_time;
-  for (const size_t i : sorted_indices(readings.all.size(), [&](size_t a, size_t b) {
-         return readings.all[a].time_s < readings.all[b].time_s;
-       })) {
-    in_time.push_back(readings.all[i]);
-    // Images from before the first row are assigned to the start.
-    in_time.back().time_s = std::max(in_time.back().time_s, readings.first_s);
-  }
-  readings.all = std::move(in_time);
+  readings.all = in_time(readings.all, readings.first_s);
   return readings;
 }
 

@@ -73,6 +73,20 @@ std::string infinite_torques(const Dynamics& dynamics, double time_s, std::span<
   return names.empty() ? "" : " (no finite torque of " + names + ")";
 }
 
+// Attempts a step. A stage outside a table counts as a failure: a shorter step stays inside, and an
+// event may end the run before the edge. If no event does, the error is passed on once the steps
+// are shorter than 1e-9 of the time.
+CollocationStep::Outcome attempt(CollocationStep& step, bool is_stiff, double h_s,
+                                 const ZeroOrderHold& held, double settled) {
+  try {
+    return is_stiff ? step.attempt_stiff(h_s, held, settled) : step.attempt(h_s, held, settled);
+  } catch (const BeyondTable&) {
+    const double start_s = step.start_s();
+    if (start_s + 1e-9 * (1.0 + std::abs(start_s)) >= start_s + h_s) throw;
+    return {};
+  }
+}
+
 }  // namespace
 
 Propagator::Propagator(const Dynamics& dynamics, const PlatformState& initial, double end_s,
@@ -199,16 +213,7 @@ void Propagator::take_step() {
           printed("the step length of the propagator fell to %g s at t = %g s", h_s, start_s) +
           infinite_torques(dynamics_, start_s, step_.start()));
     }
-    CollocationStep::Outcome outcome{};
-    try {
-      outcome =
-          is_stiff_ ? step_.attempt_stiff(h_s, held_, settled) : step_.attempt(h_s, held_, settled);
-    } catch (const BeyondTable&) {
-      // A stage lies outside a table. A shorter step stays inside it, and an event may end the run
-      // before the edge. If no event does, the motion reaches the edge and the error is passed on.
-      if (start_s + 1e-9 * (1.0 + std::abs(start_s)) >= start_s + h_s) throw;
-      outcome = {};
-    }
+    const CollocationStep::Outcome outcome = attempt(step_, is_stiff_, h_s, held_, settled);
     statistics_.iterations += outcome.iterations;
     if (!outcome.converged) {
       h_s_ = 0.5 * h_s;

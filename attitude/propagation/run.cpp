@@ -384,6 +384,46 @@ double usual_output_rate_Hz(double duration_s) {
   }
 }
 
+namespace {
+
+// The state at the start. InputError if bearings, stops or battery do not allow it.
+PlatformState read_initial_state(const Settings& settings, const AttitudeModel& model) {
+  const std::optional<AttitudeParameters> apm = read_initial_apm(settings);
+  Vec3 rate_body_rad_s = settings.get(propagate_key::initial_rate);
+  if (apm && apm->rate_body_rad_s && !settings.has(propagate_key::initial_rate)) {
+    rate_body_rad_s = *apm->rate_body_rad_s;
+  }
+  const Quat attitude = read_initial_attitude(settings, apm);
+  const double angle_rad = model.platform.axis.dot(turn_vector(attitude)),
+               turns_rad =
+                   2.0 * pi * static_cast<double>(settings.get(propagate_key::initial_turns));
+  PlatformState initial = Dynamics(model).initial_state(rate_body_rad_s, angle_rad + turns_rad);
+  initial.lab_from_body = attitude;
+  check_begins_about_axis(settings, model.platform, initial.lab_from_body, initial.rate_body_rad_s);
+  read_initial_place(settings, model, initial);
+  const double tilt_rad =
+      std::acos(std::clamp(initial.lab_from_body.toRotationMatrix()(2, 2), -1.0, 1.0));
+  const std::optional<double> limit_rad = model.platform.tilt_limit_rad;
+  if (limit_rad && tilt_rad > *limit_rad) {
+    throw settings.error(settings.has(propagate_key::initial_attitude)
+                             ? propagate_key::initial_attitude.name
+                             : propagate_key::initial_tilt.name,
+                         "a tilt of " + std::to_string(tilt_rad / degree_rad) + " deg",
+                         "at most platform.tilt_limit_deg");
+  }
+  initial.charge_drawn_C = settings.get(propagate_key::initial_charge);
+  const std::optional<double>& capacity_C = model.platform.battery_capacity_C;
+  if (capacity_C && initial.charge_drawn_C > *capacity_C) {
+    throw settings.error(
+        propagate_key::initial_charge, std::to_string(initial.charge_drawn_C / 3600.0) + " drawn",
+        "at most the " + std::to_string(*capacity_C / 3600.0) + " of platform.battery_capacity_Ah");
+  }
+  initial.time_s = settings.get(propagate_key::initial_time);
+  return initial;
+}
+
+}  // namespace
+
 PropagationRun read_propagation(const Settings& root) {
   NominalModel nominal = read_attitude_model(root);
   PropagationRun run;
@@ -417,39 +457,7 @@ PropagationRun read_propagation(const Settings& root) {
   if (run.epoch.find(":60") != std::string::npos) {
     throw settings.error(propagate_key::epoch, "\"" + run.epoch + "\"", "no leap second");
   }
-  const std::optional<AttitudeParameters> apm = read_initial_apm(settings);
-  Vec3 rate_body_rad_s = settings.get(propagate_key::initial_rate);
-  if (apm && apm->rate_body_rad_s && !settings.has(propagate_key::initial_rate)) {
-    rate_body_rad_s = *apm->rate_body_rad_s;
-  }
-  const Quat attitude = read_initial_attitude(settings, apm);
-  const double angle_rad = run.model.platform.axis.dot(turn_vector(attitude)),
-               turns_rad =
-                   2.0 * pi * static_cast<double>(settings.get(propagate_key::initial_turns));
-  run.initial = Dynamics(run.model).initial_state(rate_body_rad_s, angle_rad + turns_rad);
-  run.initial.lab_from_body = attitude;
-  check_begins_about_axis(settings, run.model.platform, run.initial.lab_from_body,
-                          run.initial.rate_body_rad_s);
-  read_initial_place(settings, run.model, run.initial);
-  const double tilt_rad =
-      std::acos(std::clamp(run.initial.lab_from_body.toRotationMatrix()(2, 2), -1.0, 1.0));
-  const std::optional<double> limit_rad = run.model.platform.tilt_limit_rad;
-  if (limit_rad && tilt_rad > *limit_rad) {
-    throw settings.error(settings.has(propagate_key::initial_attitude)
-                             ? propagate_key::initial_attitude.name
-                             : propagate_key::initial_tilt.name,
-                         "a tilt of " + std::to_string(tilt_rad / degree_rad) + " deg",
-                         "at most platform.tilt_limit_deg");
-  }
-  run.initial.charge_drawn_C = settings.get(propagate_key::initial_charge);
-  const std::optional<double>& capacity_C = run.model.platform.battery_capacity_C;
-  if (capacity_C && run.initial.charge_drawn_C > *capacity_C) {
-    throw settings.error(
-        propagate_key::initial_charge,
-        std::to_string(run.initial.charge_drawn_C / 3600.0) + " drawn",
-        "at most the " + std::to_string(*capacity_C / 3600.0) + " of platform.battery_capacity_Ah");
-  }
-  run.initial.time_s = settings.get(propagate_key::initial_time);
+  run.initial = read_initial_state(settings, run.model);
   take_ephemeris(root, epoch.has_value(), run);
   // The year of a calendar time in attitude.aem has four digits.
   const double left_s = parse_epoch("9999-12-31T23:59:59")->seconds_since(*parse_epoch(run.epoch));

@@ -111,6 +111,62 @@ std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
   return curves;
 }
 
+const std::vector<double>& column_of(const Table& history, const std::string& column) {
+  return history.column(column).values;
+}
+
+Plot over_time(const std::string& name, const std::string& title, const std::string& y,
+               std::vector<Plot::Curve> curves) {
+  return {name, title, "time [s]", y, std::move(curves)};
+}
+
+// Plot of the columns STEM_x_SUFFIX to STEM_z_SUFFIX. Oscillating curves of long runs would hide
+// each other, so every axis has a separate panel.
+Plot vector_plot(const Table& history, const std::string& name, const std::string& title,
+                 const std::string& stem, const std::string& suffix, const std::string& unit) {
+  const auto along = [&](const std::string& axis) {
+    return thinned_curve(column_of(history, "t_s"), column_of(history, stem + axis + suffix));
+  };
+  Plot plot = over_time(name, title, "x [" + unit + "]", {along("_x_")});
+  plot.below = {{"y [" + unit + "]", {along("_y_")}}, {"z [" + unit + "]", {along("_z_")}}};
+  return plot;
+}
+
+// Plots of each torque, of their fractions and of their sizes, without torques that are zero.
+void add_torque_plots(const Table& history, const std::vector<std::string>& labels,
+                      std::vector<Plot>& plots) {
+  std::vector<std::string> shown;
+  std::vector<std::vector<double>> sizes;
+  double largest_N_m = 0.0;
+  for (const std::string& label : labels) {
+    const std::string stem = "torque_" + label;
+    std::vector<double> size = torque_sizes(history, stem);
+    if (!any_nonzero(size)) continue;
+    largest_N_m = std::max(largest_N_m, *std::max_element(size.begin(), size.end()));
+    shown.push_back(label);
+    sizes.push_back(std::move(size));
+    plots.push_back(
+        vector_plot(history, stem, "Torque of " + label + ", body axes", stem, "N_m", "N m"));
+  }
+  if (shown.empty()) return;
+  // A torque below this fraction of the largest one cannot be seen in the motion.
+  constexpr double min_fraction = 1e-9;
+  const std::vector<double>& t = column_of(history, "t_s");
+  std::vector<Plot::Curve> all;
+  for (size_t i = 0; i < shown.size(); ++i) {
+    all.push_back(envelope(shown[i], t, sizes[i], min_fraction * largest_N_m));
+  }
+  std::erase_if(all, [](const Plot::Curve& one) {
+    return std::none_of(one.y.begin(), one.y.end(), [](double y) { return std::isfinite(y); });
+  });
+  plots.push_back(over_time("torque_fractions",
+                            "Fraction of every torque in the sum of their sizes", "fraction [%]",
+                            stacked_fractions(t, shown, sizes)));
+  plots.push_back(over_time("torques", "Size of every torque, largest within each 240th of the run",
+                            "torque [N m]", std::move(all)));
+  plots.back().y_log = true;
+}
+
 }  // namespace
 
 Plot::Curve thinned_curve(const std::vector<double>& x, const std::vector<double>& y) {
@@ -203,82 +259,39 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
                              const std::vector<Event>& events,
                              const Propagator::Statistics& statistics) const {
   Product product;
-  const auto values = [&](const std::string& column) -> const std::vector<double>& {
-    return table_.column(column).values;
-  };
-  const std::vector<double>& t = values("t_s");
   product.tables.push_back(table_);
   if (!events.empty()) product.tables.push_back(event_table(events));
-
-  const auto add_plot = [&](const std::string& name, const std::string& title, const std::string& y,
-                            std::vector<Plot::Curve> curves) {
-    product.plots.push_back({name, title, "time [s]", y, std::move(curves)});
-  };
-  const auto line = [&](const std::vector<double>& y) { return thinned_curve(t, y); };
-  // Oscillating curves of long runs would hide each other, so every axis has a separate panel.
-  const auto add_vector_plot = [&](const std::string& name, const std::string& title,
-                                   const std::string& unit, const auto& along) {
-    add_plot(name, title, "x [" + unit + "]", {line(along('x'))});
-    product.plots.back().below = {{"y [" + unit + "]", {line(along('y'))}},
-                                  {"z [" + unit + "]", {line(along('z'))}}};
-  };
-  const auto rate_along = [&](char axis) -> const std::vector<double>& {
-    return values(std::string("rate_") + axis + "_rad_s");
-  };
-  const std::vector<double>&charge_Ah = values("charge_drawn_Ah"),
-        &power_W = values("array_power_W");
-  add_plot("tilt", "Tilt", "tilt [deg]", {line(values("tilt_deg"))});
-  add_plot("yaw", "Yaw", "yaw [deg]", {line(unwrapped_deg(values("yaw_deg")))});
-  add_vector_plot("rates", "Body rates", "rad/s", rate_along);
+  const std::vector<double>&t = column_of(table_, "t_s"), &yaw_deg = column_of(table_, "yaw_deg"),
+        &tilt_deg = column_of(table_, "tilt_deg"),
+        &charge_Ah = column_of(table_, "charge_drawn_Ah"),
+        &power_W = column_of(table_, "array_power_W");
+  std::vector<Plot>& plots = product.plots;
+  plots.push_back(over_time("tilt", "Tilt", "tilt [deg]", {thinned_curve(t, tilt_deg)}));
+  plots.push_back(over_time("yaw", "Yaw", "yaw [deg]", {thinned_curve(t, unwrapped_deg(yaw_deg))}));
+  plots.push_back(vector_plot(table_, "rates", "Body rates", "rate", "rad_s", "rad/s"));
   if (any_nonzero(charge_Ah)) {
-    add_plot("charge", "Charge missing from the battery", "charge [Ah]", {line(charge_Ah)});
+    plots.push_back(over_time("charge", "Charge missing from the battery", "charge [Ah]",
+                              {thinned_curve(t, charge_Ah)}));
   }
   if (any_nonzero(power_W)) {
-    add_plot("array_power", "Power of the solar array", "power [W]", {line(power_W)});
+    plots.push_back(over_time("array_power", "Power of the solar array", "power [W]",
+                              {thinned_curve(t, power_W)}));
   }
-  std::vector<std::string> shown;
-  std::vector<std::vector<double>> sizes;
-  double largest_N_m = 0.0;
-  for (const std::string& label : labels_) {
-    const auto along = [&](char axis) -> const std::vector<double>& {
-      return values("torque_" + label + "_" + axis + "_N_m");
-    };
-    std::vector<double> size = torque_sizes(table_, "torque_" + label);
-    if (!any_nonzero(size)) continue;
-    largest_N_m = std::max(largest_N_m, *std::max_element(size.begin(), size.end()));
-    shown.push_back(label);
-    sizes.push_back(std::move(size));
-    add_vector_plot("torque_" + label, "Torque of " + label + ", body axes", "N m", along);
-  }
-  if (!shown.empty()) {
-    // A torque below this fraction of the largest one cannot be seen in the motion.
-    constexpr double min_fraction = 1e-9;
-    std::vector<Plot::Curve> all;
-    for (size_t i = 0; i < shown.size(); ++i) {
-      all.push_back(envelope(shown[i], t, sizes[i], min_fraction * largest_N_m));
-    }
-    std::erase_if(all, [](const Plot::Curve& one) {
-      return std::none_of(one.y.begin(), one.y.end(), [](double y) { return std::isfinite(y); });
-    });
-    add_plot("torque_fractions", "Fraction of every torque in the sum of their sizes",
-             "fraction [%]", stacked_fractions(t, shown, sizes));
-    add_plot("torques", "Size of every torque, largest within each 240th of the run",
-             "torque [N m]", std::move(all));
-    product.plots.back().y_log = true;
-  }
+  add_torque_plots(table_, labels_, plots);
 
   if (!t.empty()) {
     const Excursion excursion = excursion_of(states);
+    const auto last = [&](const std::string& column) { return column_of(table_, column).back(); };
     product.quantities = {
         {"final_time_s", {t.back()}},
-        {"final_tilt_deg", {values("tilt_deg").back()}},
+        {"final_tilt_deg", {tilt_deg.back()}},
         {"largest_tilt_deg", {excursion.largest_tilt_rad / degree_rad}},
         {"largest_tilt_time_s", {excursion.largest_tilt_at_s}},
         {"yaw_excursion_deg", {excursion.yaw_rad / degree_rad}},
-        {"final_heading_deg", {values("heading_deg").back()}},
-        {"final_yaw_deg", {values("yaw_deg").back()}},
+        {"final_heading_deg", {last("heading_deg")}},
+        {"final_yaw_deg", {yaw_deg.back()}},
         {"final_rate_rad_s",
-         {std::hypot(rate_along('x').back(), rate_along('y').back(), rate_along('z').back())}},
+         {std::hypot(last("rate_x_rad_s"), last("rate_y_rad_s"), last("rate_z_rad_s"))}},
         {"final_charge_drawn_Ah", {charge_Ah.back()}},
     };
   }

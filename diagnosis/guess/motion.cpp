@@ -517,6 +517,41 @@ void add_sequence(TomlDocument& document, const Machine& m) {
   document.set(table, "angle_sequence", {sequence});
 }
 
+// Adds the centre of the circle on which the coordinates are.
+void add_pivot(TomlDocument& document, const Circle& circle) {
+  document.comment(
+      "CONFIRM: the places are on a circle of radius " + digits(circle.radius_m) + " m, to " +
+      digits(100.0 * circle.scatter, 2) +
+      " %, as of a pendulum or a turntable: they are read as the angle about its centre.");
+  const Eigen::Vector2d& centre_m = circle.centre_m;
+  document.set(document.table("recording"), "pivot_m",
+               {SettingsNode::Array{{rounded(centre_m.x())}, {rounded(centre_m.y())}}});
+}
+
+// Adds the noise of every instrument, and the bias of a gyro if nothing measures the angle.
+void add_noises(TomlDocument& document, const Machine& m) {
+  const char *const rate_noise = "gyro.noise_rad_s", *const angle_noise = "angle.noise_arcsec";
+  const bool has_gyro = m.runs.front().has_gyro, has_angle = m.runs.front().has_some_attitude();
+  if (has_gyro) add_noise(document, m.runs, {3, 4, 5}, rate_noise, 1.0);
+  if (has_angle && m.platform.turns_about_one_axis()) {
+    add_noise(document, m.runs, {0, 1, 2}, angle_noise, arcsecond_rad);
+  }
+  if (has_gyro && !has_angle && m.platform.turns_about_one_axis() && !m.platform.slides()) {
+    add_gyro_bias(document, m);
+  }
+  std::vector<int> rates, angles;
+  for (int channel = vector_channels; channel < channel_count; ++channel) {
+    if (channel_traits(channel).measures == Measures::angle) angles.push_back(channel);
+    if (channel_traits(channel).measures == Measures::rate) rates.push_back(channel);
+  }
+  if (!has_gyro) add_noise(document, m.runs, rates, rate_noise, 1.0);
+  if (!has_angle) add_noise(document, m.runs, angles, angle_noise, arcsecond_rad);
+  if (m.platform.slides()) {
+    const int x = vector_channels + static_cast<int>(Scalar::position_x);
+    add_noise(document, m.runs, {x, x + 1}, "position.noise_m", 1.0);
+  }
+}
+
 }  // namespace
 
 void guess_motion(TomlDocument& document, const std::vector<fs::path>& recordings,
@@ -551,40 +586,12 @@ void guess_motion(TomlDocument& document, const std::vector<fs::path>& recording
   }
   add_reading(document, reading);
   add_columns(document, columns);
-  if (circle) {
-    document.comment("CONFIRM: the places are on a circle of radius " + digits(circle->radius_m) +
-                     " m, to " + digits(100.0 * circle->scatter, 2) +
-                     " %, as of a pendulum or a turntable and not of a sliding body: they are read "
-                     "as the angle about its centre.");
-    document.set(
-        document.table("recording"), "pivot_m",
-        {SettingsNode::Array{{rounded(circle->centre_m.x())}, {rounded(circle->centre_m.y())}}});
-  }
+  if (circle) add_pivot(document, *circle);
   add_sequence(document, m);
   SettingsNode::Table& platform = add_machine(document, m);
   if (m.platform.topology == Topology::free) add_inertia(document, platform, m.runs);
   if (m.platform.slides()) add_spring(document, m);
-  const char *const rate_noise = "gyro.noise_rad_s", *const angle_noise = "angle.noise_arcsec";
-  const bool has_gyro = m.runs.front().has_gyro, has_angle = m.runs.front().has_some_attitude();
-  if (has_gyro) add_noise(document, m.runs, {3, 4, 5}, rate_noise, 1.0);
-  if (has_angle && m.platform.turns_about_one_axis()) {
-    add_noise(document, m.runs, {0, 1, 2}, angle_noise, arcsecond_rad);
-  }
-  if (has_gyro && !has_angle && m.platform.turns_about_one_axis() && !m.platform.slides()) {
-    add_gyro_bias(document, m);
-  }
-  std::vector<int> rates, angles;
-  for (int channel = vector_channels; channel < channel_count; ++channel) {
-    const Measures measures = channel_traits(channel).measures;
-    if (measures == Measures::angle) angles.push_back(channel);
-    if (measures == Measures::rate) rates.push_back(channel);
-  }
-  if (!has_gyro) add_noise(document, m.runs, rates, rate_noise, 1.0);
-  if (!has_angle) add_noise(document, m.runs, angles, angle_noise, arcsecond_rad);
-  if (m.platform.slides()) {
-    const int x = vector_channels + static_cast<int>(Scalar::position_x);
-    add_noise(document, m.runs, {x, x + 1}, "position.noise_m", 1.0);
-  }
+  add_noises(document, m);
   const std::string unused =
       joined_text(MotionColumns(m.recordings.front(), m.platform, m.names.front()).unused(), ", ");
   if (!unused.empty()) document.comment("Unused columns: " + unused + ".");

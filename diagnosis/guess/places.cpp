@@ -13,58 +13,107 @@
 
 namespace photorque {
 
-std::optional<Circle> circle_of(const Recording& recording) {
-  if (recording.find("x_m") == nullptr || recording.find("y_m") == nullptr) return std::nullopt;
-  const Channel &x = *recording.find("x_m"), &y = *recording.find("y_m");
-  std::vector<Eigen::Vector2d> points;
-  for (size_t i = 0; i < recording.rows(); ++i) {
-    const Eigen::Vector2d point(x.values[i], y.values[i]);
+namespace {
+
+using Eigen::Vector2d;
+
+std::vector<Vector2d> places_of(const Recording& recording) {
+  const Channel *x = recording.find("x_m"), *y = recording.find("y_m");
+  std::vector<Vector2d> points;
+  for (size_t i = 0; x != nullptr && y != nullptr && i < recording.rows(); ++i) {
+    const Vector2d point(x->values[i], y->values[i]);
     if (point.allFinite()) points.push_back(point);
   }
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  return points;
+}
+
+// Circle with the limit of the distances [m] at which a point counts as an outlier.
+struct FittedCircle {
+  Vector2d centre_m;
+  double radius_m = 0.0, reach_m = 0.0;
+};
+
+// |p − c|² = R² is linear in c and R² − |c|² (I. Kåsa, IEEE Trans. Instrum. Meas. 25, 8 (1976)).
+// The radius is too small for short arcs. Nothing for fewer than three points.
+std::optional<FittedCircle> linear_fit(const std::vector<Vector2d>& points) {
+  Vector2d mean = Vector2d::Zero();
   for (const auto& p : points) mean += p / static_cast<double>(points.size());
-  // |p − c|² = R² is linear in c and R² − |c|² (I. Kåsa, IEEE Trans. Instrum. Meas. 25, 8 (1976)).
-  // This start has too small a radius for short arcs.
   Mat3 squares = Mat3::Zero();
   Vec3 right = Vec3::Zero();
   for (const auto& p : points) {
-    const Eigen::Vector2d d = p - mean;
+    const Vector2d d = p - mean;
     const Vec3 row(2.0 * d.x(), 2.0 * d.y(), 1.0);
     squares += row * row.transpose();
     right += row * d.squaredNorm();
   }
-  const Vec3 start = squares.ldlt().solve(right);
-  if (points.size() < 3 || !start.allFinite()) return std::nullopt;
-  Eigen::Vector2d centre = mean + start.head<2>();
-  double radius_m = std::sqrt(std::max(0.0, start[2] + start.head<2>().squaredNorm()));
+  const Vec3 solved = squares.ldlt().solve(right);
+  if (points.size() < 3 || !solved.allFinite()) return std::nullopt;
+  return FittedCircle{mean + solved.head<2>(),
+                      std::sqrt(std::max(0.0, solved[2] + solved.head<2>().squaredNorm()))};
+}
+
+// Minimises the distances from the circle with Tukey's biweight, starting from linear_fit().
+std::optional<FittedCircle> robust_fit(const std::vector<Vector2d>& points) {
   constexpr int rounds = 20;
-  constexpr double biweight = 4.685;
-  double reach_m = 0.0;
-  for (int round = 0; round < rounds; ++round) {
+  constexpr double biweight = 4.685;  // 95 % efficiency for Gaussian errors
+  std::optional<FittedCircle> circle = linear_fit(points);
+  for (int round = 0; circle && round < rounds; ++round) {
     std::vector<double> sizes;
-    for (const auto& p : points) sizes.push_back(std::abs((p - centre).norm() - radius_m));
-    reach_m = std::max(biweight * upper_median(sizes) / normal_median, 1e-300);
-    squares.setZero();
-    right.setZero();
     for (const auto& p : points) {
-      const Eigen::Vector2d d = p - centre;
+      sizes.push_back(std::abs((p - circle->centre_m).norm() - circle->radius_m));
+    }
+    circle->reach_m = std::max(biweight * upper_median(sizes) / normal_median, 1e-300);
+    Mat3 squares = Mat3::Zero();
+    Vec3 right = Vec3::Zero();
+    for (const auto& p : points) {
+      const Vector2d d = p - circle->centre_m;
       if (!(d.norm() > 0.0)) continue;
-      const double off_m = d.norm() - radius_m,
-                   weight = std::pow(std::max(0.0, 1.0 - std::pow(off_m / reach_m, 2)), 2);
+      const double off_m = d.norm() - circle->radius_m,
+                   weight = std::pow(std::max(0.0, 1.0 - std::pow(off_m / circle->reach_m, 2)), 2);
       const Vec3 row(d.x() / d.norm(), d.y() / d.norm(), 1.0);
       squares += weight * row * row.transpose();
       right += weight * off_m * row;
     }
     const Vec3 step = squares.ldlt().solve(right);
     if (!step.allFinite()) return std::nullopt;
-    centre += step.head<2>();
-    radius_m += step[2];
+    circle->centre_m += step.head<2>();
+    circle->radius_m += step[2];
   }
+  return circle;
+}
+
+// Number of turning points that are more than `apart` from each other.
+int turning_points(const std::vector<double>& values, double apart) {
+  int turns = 0, sense = 0;
+  double extreme = 0.0;
+  for (const double a : values) {
+    if (sense * (a - extreme) > 0.0 || sense == 0) {
+      if (sense != 0) extreme = a;
+      if (sense == 0 && std::abs(a) > apart) {
+        sense = a > 0.0 ? 1 : -1;
+        extreme = a;
+      }
+    } else if (std::abs(a - extreme) > apart) {
+      sense = -sense;
+      extreme = a;
+      ++turns;
+    }
+  }
+  return turns;
+}
+
+}  // namespace
+
+std::optional<Circle> circle_of(const Recording& recording) {
+  const std::vector<Vector2d> points = places_of(recording);
+  const std::optional<FittedCircle> circle = robust_fit(points);
+  if (!circle) return std::nullopt;
+  const double radius_m = circle->radius_m;
   double square = 0.0, kept = 0.0, at = 0.0, low = 0.0, high = 0.0, before = NAN;
-  std::vector<double> angle_rad;
+  std::vector<double> angle_rad;  // from the first point, with whole turns
   for (const auto& p : points) {
-    const Eigen::Vector2d d = p - centre;
-    if (std::abs(d.norm() - radius_m) > reach_m) continue;
+    const Vector2d d = p - circle->centre_m;
+    if (std::abs(d.norm() - radius_m) > circle->reach_m) continue;
     square += std::pow(d.norm() - radius_m, 2.0);
     kept += 1.0;
     const double direction = std::atan2(d.y(), d.x());
@@ -74,29 +123,14 @@ std::optional<Circle> circle_of(const Recording& recording) {
     low = std::min(low, at);
     high = std::max(high, at);
   }
-  // Counts turning points that are more than a fifth of the arc apart.
-  int turns = 0, sense = 0;
-  double extreme = 0.0;
-  for (const double a : angle_rad) {
-    if (sense * (a - extreme) > 0.0 || sense == 0) {
-      if (sense != 0) extreme = a;
-      if (sense == 0 && std::abs(a) > 0.2 * (high - low)) {
-        sense = a > 0.0 ? 1 : -1;
-        extreme = a;
-      }
-    } else if (std::abs(a - extreme) > 0.2 * (high - low)) {
-      sense = -sense;
-      extreme = a;
-      ++turns;
-    }
-  }
   // The arc must be higher than the scatter: a straight line is part of any large circle.
-  constexpr double max_scatter = 0.02, round_rad = 2.0, scatters = 10.0;
+  constexpr double max_scatter = 0.02, round_rad = 2.0, scatters = 10.0, turn_of_range = 0.2;
   const double relative = std::sqrt(square / kept) / radius_m, range_rad = high - low,
                height = 1.0 - std::cos(0.5 * std::min(range_rad, pi));
-  const bool is_arc = (turns >= 2 && height > scatters * relative) || range_rad > round_rad;
+  const bool swings = turning_points(angle_rad, turn_of_range * range_rad) >= 2;
+  const bool is_arc = (swings && height > scatters * relative) || range_rad > round_rad;
   if (!(radius_m > 0.0) || !(relative < max_scatter) || !is_arc) return std::nullopt;
-  return Circle{centre, radius_m, relative};
+  return Circle{circle->centre_m, radius_m, relative};
 }
 
 std::optional<Oscillation> oscillation_of(const Recording& recording,
@@ -130,13 +164,13 @@ std::optional<Oscillation> oscillation_of(const Recording& recording,
         sizes_m.push_back(std::abs(value_m[k + 1]));
         sum_m += sizes_m.back();
       }
-      // Without the upper tenth, which outliers may be in.
+      // The quantile 0.9, because the upper tenth may contain outliers.
       std::ranges::sort(sizes_m);
       readings.push_back(static_cast<double>(sizes_m.size()));
       full_m += readings.back() * sizes_m[sizes_m.size() * 9 / 10];
       between_s.push_back(passed[i].time_s - passed[i - 1].time_s);
     }
-    // The mean without left-out rows: readings are too coarse for a median.
+    // The mean without periods that lack rows: a median would be as coarse as the rows.
     const double usual_s = upper_median(between_s);
     std::erase_if(between_s, [&](double s) { return std::abs(s - usual_s) > 0.3 * usual_s; });
     const auto count = static_cast<double>(between_s.size());

@@ -1,5 +1,5 @@
-// The machine that recorded coordinates show: a pendulum's bob or a mark on a turntable goes on a
-// circle, a weight on a spring oscillates about its middle.
+// Motions that identify the machine of recorded coordinates: the bob of a pendulum or a mark on a
+// turntable moves on a circle, and a weight on a spring oscillates about its rest position.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,8 +30,8 @@ struct Oscillation {
 // The oscillation of x_m or y_m, that of the larger deviations, if it passes its middle at least
 // seven times at regular intervals of at least three readings, each time from beyond three times
 // `noise_m` of x and y. A spring keeps a body long at the turning points: between two passages, the
-// mean deviation is 0.64 of the quantile 0.9. It is 0.56 for a body that goes to and fro between
-// cushions.
+// mean deviation is 0.64 of the quantile 0.9. It is 0.56 for a body that bounces between two
+// elastic walls.
 std::optional<Oscillation> oscillation_of(const Recording& recording,
                                           const Eigen::Vector2d& noise_m);
 

@@ -72,6 +72,36 @@ void take_dead(IvSweep& sweep, CurveCleaning& cleaning) {
   if (cleaning.dead > 0) take(out, sweep, cleaning);
 }
 
+// A falling line through two readings, and the number of readings that agree with it.
+struct Line {
+  double at_zero_A = 0.0, slope_S = 0.0;
+  size_t agree = 0;
+};
+
+// The line at most as steep as `steepest_S` with which most of the readings `of`, by rising
+// voltage, agree to `close_A`.
+Line line_of_most(const IvSweep& sweep, const std::vector<size_t>& of, double steepest_S,
+                  double close_A) {
+  const auto volts = [&](size_t k) { return sweep.voltage_V[of[k]]; };
+  const auto amperes = [&](size_t k) { return sweep.current_A[of[k]]; };
+  constexpr size_t most_starts = 60;
+  const size_t stride = std::max<size_t>(1, of.size() / most_starts);
+  Line best;
+  for (size_t a = 0; a < of.size(); a += stride) {
+    for (size_t b = a + of.size() / 4; b < of.size(); b += stride) {
+      if (!(volts(b) > volts(a))) continue;
+      const double slope_S = (amperes(b) - amperes(a)) / (volts(b) - volts(a));
+      if (slope_S > 0.0 || slope_S < -steepest_S) continue;
+      size_t agree = 0;
+      for (size_t k = 0; k < of.size(); ++k) {
+        agree += std::abs(amperes(k) - amperes(a) - slope_S * (volts(k) - volts(a))) < close_A;
+      }
+      if (agree > best.agree) best = {amperes(a) - slope_S * volts(a), slope_S, agree};
+    }
+  }
+  return best;
+}
+
 }  // namespace
 }  // namespace curve_cleaning
 
@@ -122,33 +152,16 @@ UnsteadyLight take_unsteady_light(IvSweep& sweep, double noise) {
   if (flat.size() < 12) return {};
   const auto volts = [&](size_t k) { return sweep.voltage_V[flat[k]]; };
   const auto amperes = [&](size_t k) { return sweep.current_A[flat[k]]; };
-  // The falling line through two readings with which most readings agree.
   const double scale_A = std::ranges::max(sweep.current_A), close_A = 3.0 * noise * scale_A;
-  const double steepest_S = 0.1 * scale_A / (0.6 * open_V);
-  size_t most = 0;
-  double at_zero_A = 0.0, slope_S = 0.0;
-  const size_t stride = std::max<size_t>(1, flat.size() / 60);
-  for (size_t a = 0; a < flat.size(); a += stride) {
-    for (size_t b = a + flat.size() / 4; b < flat.size(); b += stride) {
-      if (!(volts(b) > volts(a))) continue;
-      const double slope = (amperes(b) - amperes(a)) / (volts(b) - volts(a));
-      if (slope > 0.0 || slope < -steepest_S) continue;
-      size_t agree = 0;
-      for (size_t k = 0; k < flat.size(); ++k) {
-        agree += std::abs(amperes(k) - amperes(a) - slope * (volts(k) - volts(a))) < close_A;
-      }
-      if (agree <= most) continue;
-      most = agree;
-      slope_S = slope;
-      at_zero_A = amperes(a) - slope * volts(a);
-    }
-  }
-  if (5 * most < 3 * flat.size()) return {};  // no line
+  const Line line = line_of_most(sweep, flat, 0.1 * scale_A / (0.6 * open_V), close_A);
+  if (5 * line.agree < 3 * flat.size()) return {};  // no line
   UnsteadyLight found;
   std::vector<char> out(order.size(), 0);
   constexpr size_t shortest = 3, beside = 3;
   constexpr double least = 0.01, half = 0.5;
-  const auto off_A = [&](size_t k) { return amperes(k) - at_zero_A - slope_S * volts(k); };
+  const auto off_A = [&](size_t k) {
+    return amperes(k) - line.at_zero_A - line.slope_S * volts(k);
+  };
   for (size_t k = 0, end = 0; k < flat.size(); k = end + 1) {
     for (end = k; end < flat.size() && std::abs(off_A(end)) > close_A;) ++end;
     if (end - k < shortest) continue;

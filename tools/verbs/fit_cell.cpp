@@ -357,6 +357,31 @@ void print_shunt_law(const Console& console, ShuntLaw law, const std::string& mo
                more);
 }
 
+// Adds the table "curves" and the plot of the first curve.
+void add_curves(const FitTask& task, const ConditionsFit& fit, Product& product) {
+  Table table = Table::of("curves", "The curves");
+  for (size_t k = 0; k < fit.curves.size(); ++k) {
+    const CurveAt& at = task.conditions[fit.curves[k].index];
+    const double light_A = fit.curves[k].photocurrent_A.value;
+    const CellCurve cell(in_light(parameters_at(fit.model, 1.0, at.temperature_K), light_A));
+    const ArrayPoint best = best_point(cell, light_A);
+    table.row()
+        .set("curve", task.names[fit.curves[k].index])
+        .set("irradiance_W_m2", at.irradiance_W_m2)
+        .set("temperature_K", at.temperature_K)
+        .set("photocurrent_A", light_A)
+        .set("standard_error_A", fit.curves[k].photocurrent_A.standard_error)
+        .set("rms_A", fit.curves[k].rms_A)
+        .set("maximum_power_W", best.power_W());
+    if (k == 0) {
+      FitTask at_first = task;
+      at_first.sweeps = {at.sweep};
+      add_cell_plot(at_first, cell, light_A, product);
+    }
+  }
+  product.tables.push_back(table);
+}
+
 Product fit_several_conditions(const FitTask& given, const Console& console) {
   const ConditionsFit fit = fit_conditions(given.conditions, given.noise, given.shunt_law);
   FitTask task = given;
@@ -396,31 +421,11 @@ Product fit_several_conditions(const FitTask& given, const Console& console) {
                " curves; scatter " + readable_number(std::sqrt(fit.variance), 3) +
                " times that of the stated noise");
   print_misfit(console, std::sqrt(fit.variance));
-  Table table = Table::of("curves", "The curves");
   Product product = parameter_product(rows);
-  for (size_t k = 0; k < fit.curves.size(); ++k) {
-    const CurveAt& at = task.conditions[fit.curves[k].index];
-    const double light_A = fit.curves[k].photocurrent_A.value;
-    const CellCurve cell(in_light(parameters_at(fit.model, 1.0, at.temperature_K), light_A));
-    const ArrayPoint best = best_point(cell, light_A);
-    table.row()
-        .set("curve", task.names[fit.curves[k].index])
-        .set("irradiance_W_m2", at.irradiance_W_m2)
-        .set("temperature_K", at.temperature_K)
-        .set("photocurrent_A", light_A)
-        .set("standard_error_A", fit.curves[k].photocurrent_A.standard_error)
-        .set("rms_A", fit.curves[k].rms_A)
-        .set("maximum_power_W", best.power_W());
-    if (k == 0) {
-      FitTask at_first = task;
-      at_first.sweeps = {at.sweep};
-      add_cell_plot(at_first, cell, light_A, product);
-    }
-  }
+  add_curves(task, fit, product);
   print_cell(console, fit.diode, task, fit.model.reference);
   if (has_gap) print_key(console, "gap_eV", fit.model.gap_eV);
   if (has_gap) print_key(console, "gap_slope_per_K", fit.model.gap_slope_1_K);
-  product.tables.push_back(table);
   return product;
 }
 

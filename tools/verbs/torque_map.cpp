@@ -62,7 +62,7 @@ class PowerTable {
 };
 
 void print_torques(const WrenchTable& wrenches, const AttitudeGrid& grid, const Console& console) {
-  constexpr size_t most = 20;
+  constexpr size_t max_lines = 20;  // without --verbose
   console.heading("Torque about the centre of rotation, body frame");
   std::string names = "  tilt [deg]  heading [deg]";
   for (const char* name : {"torque x", "torque y", "torque z"}) names += in_column(name);
@@ -84,10 +84,10 @@ void print_torques(const WrenchTable& wrenches, const AttitudeGrid& grid, const 
                                         rounded_N_m(wrenches.torque_error_N_m[node][i])},
                                "N m"));
       }
-      (node_count++ < most ? console : console.details()).line(line);
+      (node_count++ < max_lines ? console : console.details()).line(line);
     }
   }
-  if (node_count > most) {
+  if (node_count > max_lines) {
     console.line("  " + std::to_string(node_count) +
                  " attitudes in all: wrench_table_body.csv, or --verbose");
   }

@@ -1,204 +1,13 @@
-// The catalogue of candidates, with parameter scales for the machine at hand.
+// The candidates that recordings can reveal.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "attitude/estimation/axis_readings.h"
 #include "attitude/estimation/swing.h"
-#include "attitude/propagation/run.h"
-#include "diagnosis/attitude/effects/trial.h"
+#include "diagnosis/attitude/effects/machine_scale.h"
 
 namespace photorque {
 namespace {
-
-// Sampled motion of one run: some states from the readings, and the scale of the acceleration.
-struct ReadMotion {
-  std::vector<PlatformState> states;
-  std::vector<double> turned_rad = {};  // angle about the only axis in each state, with whole turns
-  double acceleration_rad_s2 = 0.0;
-  double acceleration_m_s2 = 0.0;  // for a sliding body
-};
-
-// Position and velocity of a sliding body at block `i`, from the readings.
-std::array<double, 4> place_at(const Observation& seen, size_t i, size_t reach) {
-  std::array<double, 4> place{};
-  const size_t from = i - std::min(i, reach), to = std::min(seen.blocks() - 1, i + reach);
-  for (int k = 0; k < 2; ++k) {
-    const auto at = static_cast<size_t>(k);
-    const int position = static_cast<int>(Scalar::position_x) + k,
-              velocity = static_cast<int>(Scalar::velocity_x) + k;
-    const auto read = [&](int scalar, size_t block) {
-      return seen.rows_of(block, vector_channels + scalar) > 0.0;
-    };
-    const auto value = [&](int scalar, size_t block) {
-      return seen.scalar[static_cast<size_t>(scalar)].value[block];
-    };
-    if (read(position, i)) place[at] = value(position, i);
-    if (read(velocity, i)) {
-      place[2 + at] = value(velocity, i);
-    } else if (to > from && read(position, from) && read(position, to)) {
-      place[2 + at] =
-          (value(position, to) - value(position, from)) / (seen.time_s[to] - seen.time_s[from]);
-    }
-  }
-  return place;
-}
-
-Vec3 rate_at(const Observation& seen, size_t i, size_t reach) {
-  Vec3 rate = Vec3::Zero();
-  if (seen.has_some_attitude()) {
-    const size_t from = i - std::min(i, reach), to = std::min(seen.blocks() - 1, i + reach);
-    if (seen.attitude_rows[from] > 0.0 && seen.attitude_rows[to] > 0.0 && to > from) {
-      const Quat turn = seen.attitude[from].conjugate() * seen.attitude[to];
-      rate = turn_vector(turn) / (seen.time_s[to] - seen.time_s[from]);
-    }
-  }
-  if (seen.rows_of(i, vector_channels + static_cast<int>(Scalar::rate_magnitude)) > 0.0) {
-    // The axis is unknown: the rate is assumed to be equal about all three.
-    const double magnitude = seen.scalar[static_cast<size_t>(Scalar::rate_magnitude)].value[i];
-    rate = magnitude / std::sqrt(3.0) * Vec3::Ones();
-  }
-  for (int k = 0; k < 3; ++k) {
-    if (seen.gyro_rows[i][k] > 0.0) rate[k] = seen.gyro_rad_s[i][k];
-  }
-  return rate;
-}
-
-ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
-  constexpr size_t most_states = 40;
-  const size_t stride = std::max<size_t>(1, seen.blocks() / most_states);
-  // Distance of attitudes [blocks] from which a rate is computed.
-  const size_t reach = std::max<size_t>(1, seen.blocks() / 8);
-  ReadMotion motion;
-  Vec3 least = Vec3::Constant(1e308), most = -least, slowest = least, fastest = most;
-  const int translation = Dynamics(model).first_of_translation();
-  const bool hides_angle = model.platform.turns_about_one_axis() && !seen.has_some_attitude();
-  const AxisReadings swing =
-      hides_angle ? angles_of_swing(seen, model.platform.axis) : AxisReadings();
-  const std::vector<double> angles_rad = seen.angles_rad(model.platform.axis, 0, seen.blocks());
-  size_t at_swing = 0;
-  for (size_t i = 0; i < seen.blocks(); i += stride) {
-    double turned_rad = std::isnan(angles_rad[i]) ? 0.0 : angles_rad[i];
-    PlatformState state = Dynamics(model).initial_state(rate_at(seen, i, reach));
-    state.time_s = seen.time_s[i];
-    if (seen.has_some_attitude() && seen.attitude_rows[i] > 0.0) {
-      state.lab_from_body = seen.attitude[i];
-    }
-    while (at_swing < swing.row.size() && swing.row[at_swing] < i) ++at_swing;
-    if (at_swing < swing.row.size()) {
-      turned_rad = swing.value[at_swing];
-      state.lab_from_body = Eigen::AngleAxisd(turned_rad, model.platform.axis);
-    }
-    if (translation >= 0) {
-      const std::array<double, 4> place = place_at(seen, i, reach);
-      std::copy(place.begin(), place.end(), state.extra.begin() + (translation - component::extra));
-      const Vec3 velocity(place[2], place[3], 0.0);
-      slowest = slowest.cwiseMin(velocity);
-      fastest = fastest.cwiseMax(velocity);
-    }
-    least = least.cwiseMin(state.rate_body_rad_s);
-    most = most.cwiseMax(state.rate_body_rad_s);
-    motion.states.push_back(std::move(state));
-    motion.turned_rad.push_back(turned_rad);
-  }
-  motion.acceleration_rad_s2 = (most - least).norm() / seen.duration_s();
-  if (translation >= 0) motion.acceleration_m_s2 = (fastest - slowest).norm() / seen.duration_s();
-  return motion;
-}
-
-// Mean square of the torque of one disturbance over the motion [N² m²], for a one-axis platform
-// about its axis; for a force on a sliding body of the force [N²].
-double mean_square_action(const Disturbance& disturbance, const AttitudeModel& nominal,
-                          const std::vector<Observation>& runs,
-                          const std::vector<ReadMotion>& motions) {
-  AttitudeModel model = nominal;
-  model.disturbances = {disturbance};
-  const bool pushes = find_kind(disturbance.kind) != nullptr &&
-                      is_force(find_kind(disturbance.kind)->screening.needs);
-  const Platform& platform = model.platform;
-  if (platform.slides()) model.disturbances.push_back(translation());
-  double sum = 0.0, count = 0.0;
-  for (size_t run = 0; run < runs.size(); ++run) {
-    model.schedule = runs[run].schedule;
-    for (size_t i = 0; i < motions[run].states.size(); ++i) {
-      const PlatformState& state = motions[run].states[i];
-      PlatformState own =
-          Dynamics(model).initial_state(state.rate_body_rad_s, motions[run].turned_rad[i]);
-      own.time_s = state.time_s;
-      own.lab_from_body = state.lab_from_body;
-      // Position and velocity are the last four states.
-      if (platform.slides()) {
-        std::copy(state.extra.end() - 4, state.extra.end(), own.extra.end() - 4);
-      }
-      Vec3 action = pushes ? disturbance_forces_lab_N(model, own).front()
-                           : disturbance_torques_body_N_m(model, own).front();
-      if (!pushes && platform.turns_about_one_axis()) {
-        action = platform.axis.dot(action) * platform.axis;
-      }
-      sum += action.squaredNorm();
-      count += 1.0;
-    }
-  }
-  return count > 0.0 ? sum / count : 0.0;
-}
-
-// Excludes components of an array that have no effect about the single axis if another has one.
-void drop_ineffective_components(const std::vector<double>& actions, Candidate& c) {
-  constexpr double nothing = 1e-9;
-  for (size_t p = 0; p < actions.size(); ++p) {
-    double most = 0.0;
-    for (size_t other = 0; other < actions.size(); ++other) {
-      if (c.start.parameters[other].key == c.start.parameters[p].key) {
-        most = std::max(most, actions[other]);
-      }
-    }
-    if (c.is_strength(p) && most > 0.0 && actions[p] < nothing * most) c.scale[p] = 0.0;
-  }
-}
-
-// The scales of the catalogue are those of platforms on air bearings. For a bicycle wheel or a
-// spacecraft they are wrong by many decades. For such machines the scale of every strength is set
-// from the recorded rates: its torque over the recorded motion then equals the mean moment of
-// inertia times the range of the rates over the duration. Platforms on air bearings and effects
-// without a torque are unchanged.
-void scale_to_machine(const NominalModel& nominal, const std::vector<Observation>& runs,
-                      std::vector<Candidate>& candidates) {
-  const Platform& platform = nominal.model.platform;
-  if (platform.has_air_bearing()) return;
-  AttitudeModel bare = nominal.model;
-  bare.disturbances.clear();
-  if (platform.slides()) bare.disturbances.push_back(translation());
-  // A few runs suffice.
-  constexpr size_t most_runs = 8;
-  std::vector<Observation> some;
-  std::vector<ReadMotion> motions;
-  double square = 0.0, square_m2_s4 = 0.0;
-  const size_t stride = std::max<size_t>(1, runs.size() / most_runs);
-  for (size_t run = 0; run < runs.size(); run += stride) {
-    some.push_back(runs[run]);
-    motions.push_back(read_motion(bare, runs[run]));
-    square += motions.back().acceleration_rad_s2 * motions.back().acceleration_rad_s2;
-    square_m2_s4 += motions.back().acceleration_m_s2 * motions.back().acceleration_m_s2;
-  }
-  const double torque_N_m = platform.inertia_kg_m2.trace() / 3.0 *
-                            std::sqrt(square / static_cast<double>(motions.size()));
-  const double force_N =
-      platform.mass_kg * std::sqrt(square_m2_s4 / static_cast<double>(motions.size()));
-  if (!(torque_N_m > 0.0) && !(force_N > 0.0)) return;
-  for (Candidate& c : candidates) {
-    const double expected = is_force(c.effect.how.needs) ? force_N : torque_N_m;
-    if (!(expected > 0.0)) continue;
-    std::vector<double> actions(c.start.parameters.size(), 0.0);
-    for (size_t p = 0; p < c.start.parameters.size(); ++p) {
-      if (!c.is_strength(p)) continue;
-      const double now =
-          std::sqrt(mean_square_action(c.with_strength_alone(p), nominal.model, some, motions));
-      if (now > 0.0 && std::isfinite(now)) c.scale[p] *= expected / now;
-      actions[p] = now;
-    }
-    if (platform.turns_about_one_axis()) drop_ineffective_components(actions, c);
-  }
-}
 
 Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) {
   Candidate c;
@@ -427,58 +236,60 @@ void set_zero_at_rest(const AttitudeModel& nominal, Candidate& c) {
   }
 }
 
-}  // namespace
+bool any_attitude(const std::vector<Observation>& runs) {
+  return std::ranges::any_of(runs, &Observation::has_some_attitude);
+}
 
-Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
-                          const Thresholds& limits) {
-  const DisturbanceContext context = nominal.context();
-  const CoveredMotion covered = covered_by(runs);
-  // The experiment of a spacecraft has no latitude.
-  const bool floats_in_laboratory =
-      !context.platform.has_bearing() && context.environment.latitude_rad != 0.0 &&
-      std::any_of(runs.begin(), runs.end(),
-                  [](const Observation& seen) { return seen.has_some_attitude(); });
-  const auto has_channel = [&](Requirement channel) {
-    switch (channel) {
-      case Requirement::command:
-        return covered.has_commands || covered.has_forces;
-      case Requirement::charge:
-        return covered.charge_C != 0.0;
-      case Requirement::field:
-        return nominal.model.environment.magnetic_field_lab_T.norm() > 0.0;
-      case Requirement::gravity:
-        return context.platform.has_bearing() && context.environment.gravity_lab_m_s2.norm() > 0.0;
-      case Requirement::bearing:
-        return context.platform.has_bearing();
-      case Requirement::air_bearing:
-        return context.platform.has_air_bearing();
-      case Requirement::laboratory:
-        return context.platform.has_bearing() || floats_in_laboratory;
-      case Requirement::turning_laboratory:
-        return context.platform.has_air_bearing() || floats_in_laboratory;
-      case Requirement::wheel:
-        return covered.has_wheel;
-      case Requirement::lamps:
-        return covered.has_lamps;
-      case Requirement::plane:
-        return context.platform.slides();
-      case Requirement::thrust:
-        return covered.has_forces;
-      case Requirement::none:
-        break;
-    }
-    return true;
+// Whether platform, environment and recordings have what an effect requires.
+bool is_met(Requirement needs, const NominalModel& nominal, const CoveredMotion& covered,
+            const std::vector<Observation>& runs) {
+  const Platform& platform = nominal.model.platform;
+  const Environment& environment = nominal.model.environment;
+  const auto floats_in_laboratory = [&] {
+    // The experiment of a spacecraft has no latitude.
+    return !platform.has_bearing() && environment.latitude_rad != 0.0 && any_attitude(runs);
   };
-  Candidates all{{}, limits};
-  for (const Observation& seen : runs) {
-    all.longest_run_s = std::max(all.longest_run_s, seen.duration_s());
+  switch (needs) {
+    case Requirement::command:
+      return covered.has_commands || covered.has_forces;
+    case Requirement::charge:
+      return covered.charge_C != 0.0;
+    case Requirement::field:
+      return environment.magnetic_field_lab_T.norm() > 0.0;
+    case Requirement::gravity:
+      return platform.has_bearing() && environment.gravity_lab_m_s2.norm() > 0.0;
+    case Requirement::bearing:
+      return platform.has_bearing();
+    case Requirement::air_bearing:
+      return platform.has_air_bearing();
+    case Requirement::laboratory:
+      return platform.has_bearing() || floats_in_laboratory();
+    case Requirement::turning_laboratory:
+      return platform.has_air_bearing() || floats_in_laboratory();
+    case Requirement::wheel:
+      return covered.has_wheel;
+    case Requirement::lamps:
+      return covered.has_lamps;
+    case Requirement::plane:
+      return platform.slides();
+    case Requirement::thrust:
+      return covered.has_forces;
+    case Requirement::none:
+      break;
   }
+  return true;
+}
+
+// Effects of the catalogue whose requirements are met, and empirical laws.
+std::vector<Candidate> catalogue_for(const NominalModel& nominal, const CoveredMotion& covered,
+                                     const std::vector<Observation>& runs) {
+  const DisturbanceContext context = nominal.context();
+  std::vector<Candidate> list;
   for (Effect& effect : catalogue(context)) {
-    if (!has_channel(effect.how.needs)) continue;
+    if (!is_met(effect.how.needs, nominal, covered, runs)) continue;
     // A law without parameters is not a candidate if the nominal model contains it.
-    const auto& acting = nominal.model.disturbances;
-    const bool acts = std::any_of(acting.begin(), acting.end(),
-                                  [&](const Disturbance& d) { return d.kind == effect.kind; });
+    const bool acts = std::ranges::find(nominal.model.disturbances, effect.kind,
+                                        &Disturbance::kind) != nominal.model.disturbances.end();
     if (effect.keys.empty() && acts) continue;
     // For rotation about one axis without known torques, all torques are relative to the inertia,
     // so its error is not identifiable.
@@ -489,82 +300,83 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     for (EffectKey& key : effect.keys) {
       if (key.is_largest_recorded) key.start = {covered.led_current_A};
     }
-    all.list.push_back(candidate_of(effect, context));
+    list.push_back(candidate_of(effect, context));
   }
-  const double torque_N_m = 5e-6;
-  for (const EmpiricalLaw& law : empirical_laws(covered, torque_N_m)) {
-    all.list.push_back(candidate_of(law));
+  // Typical of platforms on air bearings; scale_to_machine() corrects it for others.
+  constexpr double typical_torque_N_m = 5e-6;
+  for (const EmpiricalLaw& law : empirical_laws(covered, typical_torque_N_m)) {
+    list.push_back(candidate_of(law));
   }
-  scale_to_machine(nominal, runs, all.list);
-  // The rotation of a sliding body may not be observed.
-  const bool sees_turn = std::any_of(runs.begin(), runs.end(), [](const Observation& seen) {
-    return seen.has_some_attitude() || seen.has_gyro;
+  return list;
+}
+
+// If yaw hardly changes, laws of yaw, and forces that rotate with the body, are indistinguishable
+// from a constant.
+void omit_laws_of_constant_yaw(const AttitudeModel& nominal, std::vector<Candidate>& list) {
+  const bool always = depends_on_attitude(nominal);
+  std::erase_if(list, [&](const Candidate& c) {
+    const bool turns_along =
+        !always && c.effect.how.needs == Requirement::plane && needs_attitude(c, nominal);
+    return c.variable == "yaw" || c.variable == "tilt" || turns_along;
   });
-  if (context.platform.slides() && !sees_turn) {
-    std::erase_if(all.list, [](const Candidate& c) { return !is_force(c.effect.how.needs); });
+}
+
+// Omits candidates that rotation about one axis does not distinguish from others.
+void omit_indistinguishable_about_axis(const AttitudeModel& nominal, const CoveredMotion& covered,
+                                       const std::vector<Observation>& runs,
+                                       std::vector<Candidate>& list) {
+  const Platform& platform = nominal.platform;
+  const Vec3& axis = platform.axis;
+  // About a level axis the yaw is constant, and about an upright axis the tilt is. A law of the
+  // constant angle would duplicate another law.
+  const bool is_level = std::abs(axis.z()) < 0.5;
+  std::erase_if(list,
+                [&](const Candidate& c) { return c.variable == (is_level ? "yaw" : "tilt"); });
+  // About a level axis a weight exerts a restoring torque, and a twisted line a nearly equal one.
+  // A sliding body has no known line. One that turns often hangs on none, nor one whose angles
+  // show that it only slows down, over more than a turn.
+  const bool has_weight =
+      platform.slides() || std::ranges::any_of(list, [&](const Candidate& c) {
+        return c.effect.how.needs == Requirement::gravity && is_restoring(c, nominal);
+      });
+  const bool sees_angle = any_attitude(runs);
+  const bool coasts = sees_angle && !turns_less(runs, axis, 1.0) && only_slows_down(runs, axis);
+  const bool has_line = !has_weight && !coasts && turns_less(runs, axis, most_turns_of_line);
+  std::erase_if(list, [&](const Candidate& c) {
+    return !has_line && c.effect.how.needs == Requirement::bearing && is_restoring(c, nominal);
+  });
+  const bool swings_freely = !covered.has_commands && swings(runs, axis);
+  if ((!sees_angle || (!is_level && !swings_freely)) && !platform.slides()) {
+    for (Candidate& c : list) set_zero_at_rest(nominal, c);
   }
-  // If yaw hardly changes, laws of yaw, and forces that rotate with the body, are indistinguishable
-  // from a constant.
-  if (!context.platform.has_air_bearing() && !turns(runs)) {
-    const bool always = depends_on_attitude(nominal.model);
-    std::erase_if(all.list, [&](const Candidate& c) {
-      const bool turns_along =
-          !always && c.effect.how.needs == Requirement::plane && needs_attitude(c, nominal.model);
-      return c.variable == "yaw" || c.variable == "tilt" || turns_along;
-    });
+  // A steady torque is indistinguishable from an error of the angle's zero in three cases: in
+  // small swings under a weight, beside a spring, and in swings of which only rates are measured.
+  const bool hides_steady =
+      sees_angle && is_level ? has_weight && swings_little(runs) : swings_freely;
+  if (hides_steady && !platform.slides()) {
+    std::erase_if(list, [](const Candidate& c) { return c.effect.how.steady; });
   }
-  if (context.platform.turns_about_one_axis()) {
-    // About a level axis the yaw is constant, and about an upright axis the tilt is. A law of the
-    // constant angle would duplicate another law.
-    const bool is_level = std::abs(context.platform.axis.z()) < 0.5;
-    std::erase_if(all.list,
-                  [&](const Candidate& c) { return c.variable == (is_level ? "yaw" : "tilt"); });
-    // About a level axis a weight exerts a restoring torque, and a twisted line a nearly equal one.
-    // A sliding body has no known line. One that turns often hangs on none, nor one whose angles
-    // show that it only slows down, over more than a turn.
-    const bool has_weight =
-        context.platform.slides() || std::ranges::any_of(all.list, [&](const Candidate& c) {
-          return c.effect.how.needs == Requirement::gravity && is_restoring(c, nominal.model);
-        });
-    const bool sees_angle =
-        std::ranges::any_of(runs, [](const Observation& seen) { return seen.has_some_attitude(); });
-    const Vec3& axis = context.platform.axis;
-    const bool coasts = sees_angle && !turns_less(runs, axis, 1.0) && only_slows_down(runs, axis);
-    const bool has_line = !has_weight && !coasts && turns_less(runs, axis, most_turns_of_line);
-    std::erase_if(all.list, [&](const Candidate& c) {
-      return !has_line && c.effect.how.needs == Requirement::bearing &&
-             is_restoring(c, nominal.model);
-    });
-    const bool swings_freely = !covered.has_commands && swings(runs, context.platform.axis);
-    if ((!sees_angle || (!is_level && !swings_freely)) && !context.platform.slides()) {
-      for (Candidate& c : all.list) set_zero_at_rest(nominal.model, c);
-    }
-    // A steady torque is indistinguishable from an error of the angle's zero in three cases: in
-    // small swings under a weight, beside a spring, and in swings of which only rates are measured.
-    const bool hides_steady =
-        sees_angle && is_level ? has_weight && swings_little(runs) : swings_freely;
-    if (hides_steady && !context.platform.slides()) {
-      std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; });
-    }
-    // If the nominal model contains no weight, the sag of a structure would only imitate a weight.
-    const bool states_weight =
-        std::ranges::any_of(nominal.model.disturbances, [](const Disturbance& d) {
-          return find_kind(d.kind) != nullptr &&
-                 find_kind(d.kind)->screening.needs == Requirement::gravity;
-        });
-    std::erase_if(all.list, [&](const Candidate& c) {
-      return !states_weight && c.effect.how.needs == Requirement::gravity && !c.lowest.empty() &&
-             c.lowest.front() == 0.0 && is_restoring(c, nominal.model);
-    });
-  }
-  // While the rate keeps its sign, friction equals a steady torque, and its sign is known.
-  if (context.platform.turns_about_one_axis() && only_slows_down(runs, context.platform.axis) &&
+  // If the nominal model contains no weight, the sag of a structure would only imitate a weight.
+  const bool states_weight = std::ranges::any_of(nominal.disturbances, [](const Disturbance& d) {
+    return find_kind(d.kind) != nullptr &&
+           find_kind(d.kind)->screening.needs == Requirement::gravity;
+  });
+  std::erase_if(list, [&](const Candidate& c) {
+    return !states_weight && c.effect.how.needs == Requirement::gravity && !c.lowest.empty() &&
+           c.lowest.front() == 0.0 && is_restoring(c, nominal);
+  });
+}
+
+// While the rate keeps its sign, friction equals a steady torque or force, and its sign is known.
+void omit_steady_while_slowing(const Platform& platform, const std::vector<Observation>& runs,
+                               Candidates& all) {
+  if (platform.turns_about_one_axis() && only_slows_down(runs, platform.axis) &&
       std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; }) > 0) {
     all.remark =
         "it rotates in one sense only: friction cannot be distinguished from another constant "
         "torque";
   }
-  if (context.platform.slides() && slides_until_rest(runs) &&
+  if (platform.slides() && slides_until_rest(runs) &&
       std::erase_if(all.list, [](const Candidate& c) {
         return c.effect.how.steady && c.effect.how.needs == Requirement::plane;
       }) > 0) {
@@ -572,9 +384,34 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
         "it slides along a straight line and only becomes slower: friction is not distinguished "
         "from a slope or a constant force";
   }
+}
+
+}  // namespace
+
+Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
+                          const Thresholds& limits) {
+  const AttitudeModel& model = nominal.model;
+  const Platform& platform = model.platform;
+  const CoveredMotion covered = covered_by(runs);
+  Candidates all{catalogue_for(nominal, covered, runs), limits};
+  for (const Observation& seen : runs) {
+    all.longest_run_s = std::max(all.longest_run_s, seen.duration_s());
+  }
+  scale_to_machine(nominal, runs, all.list);
+  // The rotation of a sliding body may not be observed.
+  const bool sees_turn = std::ranges::any_of(
+      runs, [](const Observation& seen) { return seen.has_some_attitude() || seen.has_gyro; });
+  if (platform.slides() && !sees_turn) {
+    std::erase_if(all.list, [](const Candidate& c) { return !is_force(c.effect.how.needs); });
+  }
+  if (!platform.has_air_bearing() && !turns(runs)) omit_laws_of_constant_yaw(model, all.list);
+  if (platform.turns_about_one_axis()) {
+    omit_indistinguishable_about_axis(model, covered, runs, all.list);
+  }
+  omit_steady_while_slowing(platform, runs, all);
   // Without an attitude state, effects that depend on it cannot be evaluated.
-  if (nominal.model.holds_attitude) {
-    std::erase_if(all.list, [&](const Candidate& c) { return needs_attitude(c, nominal.model); });
+  if (model.holds_attitude) {
+    std::erase_if(all.list, [&](const Candidate& c) { return needs_attitude(c, model); });
   }
   return all;
 }

@@ -63,109 +63,140 @@ CellParameters in_reverse(CellParameters p, const ModuleState::Breakdown& b, dou
   return p;
 }
 
-// A module during construction.
-struct ModuleString {
-  int left = 0;  // average cells that are not assigned to a substring
-  ArrayWiring wiring{{{}}};
-  CellTables laws;
-  std::vector<double> light_A;
+// Builds the circuit of a module. Substrings are listed in this order: groups with changed cells,
+// then the other cells.
+class ModuleBuilder {
+ public:
+  ModuleBuilder(const ModuleWiring& wiring, const ModuleCell& cell, const ModuleState& state)
+      : wiring_(wiring),
+        state_(state),
+        average_(at_state(cell, state)),
+        average_law_(diode_voltage_law(average_)),
+        light_A_(cell.photocurrent_A * state.light),
+        left_(wiring.cells - state.bypassed) {}
 
-  int add_cell(const std::shared_ptr<const DiodeVoltageLaw>& law, double photocurrent_A) {
-    laws.push_back(law);
-    light_A.push_back(photocurrent_A);
-    return static_cast<int>(laws.size()) - 1;
+  ArrayCurve curve() {
+    add_changed_cells();
+    for (Group& group : groups_) add_substring(group);
+    if (left_ > 0) add_average(left_, substrings().emplace_back().rows);
+    ArrayChanges changes;
+    changes.series_ohm = state_.series_ohm;
+    if (substrings().empty()) {
+      add_average(1, substrings().emplace_back().rows);
+      changes.bypass_shorted = {true};
+    }
+    return {array_, std::move(laws_), photocurrent_A_, changes};
   }
-};
 
-}  // namespace
-
-ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
-                        const ModuleState& state) {
-  const CellParameters usual = at_state(cell, state);
-  const auto usual_law = diode_voltage_law(usual);
-  const double light_A = cell.photocurrent_A * state.light, share = 1.0 / wiring.chains;
-  ModuleString module;
-  module.left = wiring.cells - state.bypassed;
+ private:
   // A group under one bypass diode: the changed cells, then average cells up to the number of cells
   // that the diode bypasses.
   struct Group {
     std::vector<CellGroup> rows;
-    bool is_split, is_bypassed = true;
+    bool is_split;  // in one of several chains in parallel
+    bool is_bypassed;
   };
-  std::vector<Group> groups;
-  const auto add = [&](int count, bool is_split, const auto& add_row) {
-    count = std::min(count, module.left);
+
+  std::vector<ArrayWiring::Substring>& substrings() { return array_.strings[0].substrings; }
+
+  int add_cell(const std::shared_ptr<const DiodeVoltageLaw>& law, double photocurrent_A) {
+    laws_.push_back(law);
+    photocurrent_A_.push_back(photocurrent_A);
+    return static_cast<int>(laws_.size()) - 1;
+  }
+
+  void add_average(int count, std::vector<CellGroup>& rows) {
+    for (int i = 0; i < count; ++i) rows.emplace_back(add_cell(average_law_, light_A_));
+  }
+
+  // Adds a group of at most `count` rows, as many as there are cells left.
+  template <class AddRow>
+  void add_group(int count, bool is_split, bool is_bypassed, const AddRow& add_row) {
+    count = std::min(count, left_);
     if (count <= 0) return;
-    module.left -= count;
-    Group& group = groups.emplace_back(Group{{}, is_split});
+    left_ -= count;
+    Group& group = groups_.emplace_back(Group{{}, is_split, is_bypassed});
     for (int i = 0; i < count; ++i) group.rows.emplace_back(add_row());
-  };
-  const bool has_chains = wiring.chains > 1;
-  for (const auto& s : state.shaded) {
-    const bool is_split = has_chains && !s.in_all_chains;
-    const double part = is_split ? share : 1.0;
-    const auto law = part_of(in_reverse(usual, s.breakdown, s.leak), part, 0.0);
-    add(s.count, is_split,
-        [&] { return std::vector{module.add_cell(law, part * light_A * s.factor)}; });
-    if (!groups.empty()) groups.back().is_bypassed = s.is_bypassed;
   }
-  for (const auto& s : state.shunted) {
-    const auto law = diode_voltage_law(with_leak(part_parameters(usual, share), s.shunt_S));
-    add(s.count, has_chains, [&] { return std::vector{module.add_cell(law, share * light_A)}; });
+
+  void add_changed_cells() {
+    const bool has_chains = wiring_.chains > 1;
+    for (const auto& s : state_.shaded) {
+      const bool is_split = has_chains && !s.in_all_chains;
+      const double part = is_split ? of_chain_ : 1.0;
+      const auto law = part_of(in_reverse(average_, s.breakdown, s.leak), part, 0.0);
+      add_group(s.count, is_split, s.is_bypassed,
+                [&] { return std::vector{add_cell(law, part * light_A_ * s.factor)}; });
+    }
+    for (const auto& s : state_.shunted) {
+      const auto law =
+          diode_voltage_law(with_leak(part_parameters(average_, of_chain_), s.shunt_S));
+      add_group(s.count, has_chains, true,
+                [&] { return std::vector{add_cell(law, of_chain_ * light_A_)}; });
+    }
+    for (const auto& c : state_.cracked) {
+      // Two parts of one cell in parallel, one of them in series with a resistance.
+      const CellParameters whole = in_reverse(average_, c.breakdown, c.leak);
+      const double rest = of_chain_ * (1.0 - c.fraction), off = of_chain_ * c.fraction;
+      const auto law = part_of(whole, rest, 0.0), cut = part_of(whole, off, c.resistance_ohm);
+      add_group(c.count, has_chains, true, [&] {
+        return std::vector{add_cell(law, light_A_ * rest), add_cell(cut, light_A_ * off)};
+      });
+    }
   }
-  for (const auto& c : state.cracked) {
-    // Two parts of one cell in parallel, one of them in series with a resistance.
-    const CellParameters whole = in_reverse(usual, c.breakdown, c.leak);
-    const double rest = share * (1.0 - c.fraction), off = share * c.fraction;
-    const auto law = part_of(whole, rest, 0.0), cut = part_of(whole, off, c.resistance_ohm);
-    add(c.count, has_chains, [&] {
-      return std::vector{module.add_cell(law, light_A * rest), module.add_cell(cut, light_A * off)};
-    });
-  }
-  const auto add_usual = [&](int count, std::vector<CellGroup>& rows) {
-    for (int i = 0; i < count; ++i) rows.emplace_back(module.add_cell(usual_law, light_A));
-  };
-  Diode bypass;
-  bypass.kind = Diode::Kind::clamp;
-  bypass.drop_V = wiring.bypass_drop_V * state.bypass_drop;
-  std::vector<ArrayWiring::Substring>& substrings = module.wiring.strings[0].substrings;
-  const int under_diode = wiring.bypass_every > 0 ? wiring.bypass_every : wiring.cells;
-  for (Group& group : groups) {
-    ArrayWiring::Substring& substring = substrings.emplace_back();
-    if (wiring.bypass_every > 0 && group.is_bypassed) substring.bypass = bypass;
-    const int more = wiring.bypass_every > 0 || group.is_split
-                         ? std::clamp(under_diode - static_cast<int>(group.rows.size()), 0,
-                                      std::max(0, module.left))
-                         : 0;
-    module.left -= more;
+
+  void add_substring(Group& group) {
+    ArrayWiring::Substring& substring = substrings().emplace_back();
+    const bool has_diodes = wiring_.bypass_every > 0;
+    if (has_diodes && group.is_bypassed) {
+      substring.bypass.kind = Diode::Kind::clamp;
+      substring.bypass.drop_V = wiring_.bypass_drop_V * state_.bypass_drop;
+    }
+    const int under_diode = has_diodes ? wiring_.bypass_every : wiring_.cells;
+    const int more =
+        has_diodes || group.is_split
+            ? std::clamp(under_diode - static_cast<int>(group.rows.size()), 0, std::max(0, left_))
+            : 0;
+    left_ -= more;
     if (!group.is_split) {
-      add_usual(more, group.rows);
+      add_average(more, group.rows);
       substring.rows = std::move(group.rows);
-      continue;
+      return;
     }
     // The other chains are equal and are modelled as one chain with their total area.
     const size_t count = group.rows.size() + static_cast<size_t>(more);
-    const auto of_chain = part_of(usual, share, 0.0), of_others = part_of(usual, 1.0 - share, 0.0);
+    const double of_others = 1.0 - of_chain_;
+    const auto law = part_of(average_, of_chain_, 0.0),
+               law_of_others = part_of(average_, of_others, 0.0);
     std::vector<CellGroup> others;
-    for (int i = 0; i < more; ++i) {
-      group.rows.emplace_back(module.add_cell(of_chain, share * light_A));
-    }
+    for (int i = 0; i < more; ++i) group.rows.emplace_back(add_cell(law, of_chain_ * light_A_));
     for (size_t i = 0; i < count; ++i) {
-      others.emplace_back(module.add_cell(of_others, (1.0 - share) * light_A));
+      others.emplace_back(add_cell(law_of_others, of_others * light_A_));
     }
     using Join = CellGroup::Join;
     substring.rows.emplace_back(Join::parallel,
                                 std::vector{CellGroup(Join::series, std::move(group.rows)),
                                             CellGroup(Join::series, std::move(others))});
   }
-  if (module.left > 0) add_usual(module.left, substrings.emplace_back().rows);
-  ArrayChanges changes;
-  changes.series_ohm = state.series_ohm;
-  if (substrings.empty()) {
-    add_usual(1, substrings.emplace_back().rows);
-    changes.bypass_shorted = {true};
-  }
-  return {module.wiring, std::move(module.laws), module.light_A, changes};
+
+  const ModuleWiring& wiring_;
+  const ModuleState& state_;
+  CellParameters average_;
+  std::shared_ptr<const DiodeVoltageLaw> average_law_;
+  double light_A_;  // photocurrent of an average cell
+  double of_chain_ = 1.0 / wiring_.chains;
+  int left_;  // cells that are not assigned to a substring
+  std::vector<Group> groups_;
+  ArrayWiring array_{{{}}};
+  CellTables laws_;
+  std::vector<double> photocurrent_A_;
+};
+
+}  // namespace
+
+ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
+                        const ModuleState& state) {
+  return ModuleBuilder(wiring, cell, state).curve();
 }
 
 std::vector<ArrayCurve::SlopedPoint> module_points(const ModuleWiring& wiring,

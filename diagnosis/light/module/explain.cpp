@@ -99,7 +99,8 @@ std::vector<Family> families_of(const std::vector<ModuleHypothesis>& hypotheses)
 }
 
 // Fits hypotheses with rising numbers of cells until two in succession are hopeless compared with
-// the best. The solution for one number is a start for the next.
+// the best. The first three use all starts; the others start from the solution for the number
+// before.
 void fit_family(const ModuleFitter& fitter, const std::vector<ModuleRun>& runs, Family& family) {
   double best = -INFINITY;
   int behind = 0;
@@ -119,10 +120,11 @@ const ModuleTrial& best_of(const Family& family) {
   return *std::ranges::max_element(family.trials, {}, &ModuleTrial::log_evidence);
 }
 
-// If shaded cells are no worse than `least`, adds cracked cells with a similar curve.
+// If the log evidence of shaded cells is above `min_log_evidence`, adds cracked cells with a
+// similar curve.
 void add_crack_like_shade(const ModuleFitter& fitter, const ModuleDesign& design,
                           const ModuleNominal& nominal, const std::vector<ModuleRun>& runs,
-                          double least, std::vector<Family>& families) {
+                          double min_log_evidence, std::vector<Family>& families) {
   const auto of = [&](const std::string& kind) {
     return std::ranges::find_if(families,
                                 [&](const Family& f) { return f.hypotheses.front().kind == kind; });
@@ -130,7 +132,7 @@ void add_crack_like_shade(const ModuleFitter& fitter, const ModuleDesign& design
   const auto shaded = of("cell_shaded"), cracked = of("cell_cracked");
   if (shaded == families.end() || cracked == families.end()) return;
   const ModuleTrial& trial = best_of(*shaded);
-  if (!(trial.log_evidence > least)) return;
+  if (!(trial.log_evidence > min_log_evidence)) return;
   const ModuleHypothesis& h =
       shaded->hypotheses[static_cast<size_t>(&trial - shaded->trials.data())];
   const size_t own = h.parameters.size();
@@ -203,6 +205,7 @@ ModuleHypothesis pair_of(const ModuleAnswer& answer, size_t a, size_t b) {
   for (const std::vector<double>& start : of_b.starts) add_start(alone, start);
   if (!of_b.starts.empty()) return h;
   add_start(alone, own_of(of_b, answer.joint[b]));
+  // A parameter at its lower bound starts this many prior standard deviations above it.
   constexpr double inside = 0.3;
   std::vector<double> plain;
   for (const inference::Parameter& p : of_b.parameters) {
@@ -343,8 +346,8 @@ bool refit(const ModuleFitter& fitter, const std::vector<ModuleRun>& train,
            ModuleAnswer& answer) {
   const auto improves = [&](const std::vector<ModuleRun>& runs, ModuleTrial& old) {
     ModuleTrial fit = fitter.fit(answer.hypotheses[i], runs, &near);
-    constexpr double least = 1e-3;
-    if (!(fit.fit.chi2 < old.fit.chi2 - least)) return false;
+    constexpr double min_gain = 1e-3;  // smallest fall of χ² that counts
+    if (!(fit.fit.chi2 < old.fit.chi2 - min_gain)) return false;
     old = std::move(fit);
     return true;
   };
@@ -485,7 +488,7 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
     return !(fit.data_chi2 <= std::min(static_cast<double>(fit.samples), most_chi2)) ||
            trial.prior_excess_sigma() > limits.decision.max_excess_sigma;
   };
-  const bool is_odd = answer.decision.verdict != Verdict::consistent;
+  const bool is_odd = answer.decision.verdict != inference::Verdict::consistent;
   if (!is_odd && !leaves_more(answer.joint.front())) return answer;
   fit_effects(fitter, design, nominal, hypotheses, data.train, everything, threads, answer);
   size_t best = 0;  // best physical hypothesis

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <iterator>
 #include <numeric>
 
@@ -12,8 +13,9 @@
 namespace photorque {
 namespace {
 
-double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t trial,
-                  const ModuleData& data) {
+// Root mean square difference [A] of the held-out points from the curves of a trial.
+double held_out_rms_A(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t trial,
+                      const ModuleData& data) {
   double squares = 0.0, points = 0.0;
   for (size_t run = 0; run < data.held.size(); ++run) {
     const ModuleSweep& sweep = data.held[run].sweep;
@@ -45,6 +47,33 @@ std::pair<std::vector<double>, std::vector<double>> own_numbers(const ModuleTria
   return {std::move(values), std::move(errors)};
 }
 
+// Limit of the deficit in log evidence up to which one kind explains a curve as well as another:
+// this part of the gain counts as an error of the model of the other cells.
+struct Similarity {
+  double part_of_gain = 0.0;
+  double max_deficit = hopeless_log_evidence;
+};
+
+Similarity similarity_of(const std::string& kind, const std::string& other) {
+  const auto are_among = [&](std::initializer_list<const char*> kinds) {
+    return std::ranges::find(kinds, kind) != kinds.end() &&
+           std::ranges::find(kinds, other) != kinds.end();
+  };
+  // Shaded cells and partly disconnected cells differ by some hundredths of a volt, and so does one
+  // cell more or less. This is below the accuracy of the model of the other cells.
+  if (are_among({"cell_shaded", "cell_cracked", "bypass_open"})) {
+    return {5e-3, kind == other ? 0.5 * hopeless_log_evidence : hopeless_log_evidence};
+  }
+  if (kind == other) return {};
+  // A leak and a disconnected part both lower the knee of a cell's curve. They differ by little
+  // more than the scatter between cells.
+  if (are_among({"cell_cracked", "cell_shunted"})) return {0.1};
+  // Leaks, and light that falls while the voltage rises, both tilt the curve up to its knee. Beyond
+  // the knee they differ by little more than the scatter of leaks.
+  if (are_among({"shunt", "cell_shunted", "unsteady_light"})) return {0.25};
+  return {};
+}
+
 // Other kinds that explain the curves as well in the place of candidate `which` of the chosen
 // trial, and other numbers of its cells.
 void add_equals(const ModuleAnswer& answer, size_t which, const Thresholds& limits,
@@ -62,30 +91,6 @@ void add_equals(const ModuleAnswer& answer, size_t which, const Thresholds& limi
       std::max(1.0, joint.fit.data_chi2 / static_cast<double>(joint.fit.samples));
   const double within =
       std::max(limits.search.min_log_evidence_gain * beyond_noise, model_error * gain);
-  // Limit of the deficit in log evidence: this part of the gain counts as an error of the model of
-  // the other cells.
-  const auto within_part = [&](double part, double most = hopeless_log_evidence) {
-    return std::max(within, std::min(most, part * gain));
-  };
-  // Shaded cells and partly disconnected cells differ by some hundredths of a volt, and so does one
-  // cell more or less. This is below the accuracy of the model of the other cells.
-  const auto is_dim = [](const std::string& kind) {
-    return kind == "cell_shaded" || kind == "cell_cracked" || kind == "bypass_open";
-  };
-  const double cut_off_or_dark = within_part(5e-3),
-               more_or_less = within_part(5e-3, 0.5 * hopeless_log_evidence);
-  // A leak and a disconnected part both lower the knee of a cell's curve. They differ by little
-  // more than the scatter between cells.
-  const auto lowers_knee = [](const std::string& kind) {
-    return kind == "cell_cracked" || kind == "cell_shunted";
-  };
-  const double leak_or_cut_off = within_part(0.1);
-  // Leaks, and light that falls while the voltage rises, both tilt the curve up to its knee. Beyond
-  // the knee they differ by little more than the scatter of leaks.
-  const double leak_or_light = within_part(0.25);
-  const auto tilts = [](const std::string& kind) {
-    return kind == "shunt" || kind == "cell_shunted" || kind == "unsteady_light";
-  };
   for (size_t i = 1; i < answer.trials.size(); ++i) {
     const std::vector<size_t>& others = answer.trials[i].candidates;
     if (i == chosen || others.size() != named.size()) continue;
@@ -98,12 +103,8 @@ void add_equals(const ModuleAnswer& answer, size_t which, const Thresholds& limi
     if (rest.size() != 1) continue;
     const ModuleHypothesis& other = answer.hypotheses[rest.front()];
     const double behind = joint.log_evidence - answer.joint[i].log_evidence;
-    const auto both = [&](const auto& is) { return is(h.kind) && is(other.kind); };
-    const double limit = other.kind == h.kind ? (is_dim(h.kind) ? more_or_less : within)
-                         : both(is_dim)       ? cut_off_or_dark
-                         : both(lowers_knee)  ? leak_or_cut_off
-                         : both(tilts)        ? leak_or_light
-                                              : within;
+    const Similarity s = similarity_of(h.kind, other.kind);
+    const double limit = std::max(within, std::min(s.max_deficit, s.part_of_gain * gain));
     if (behind > limit || other.kind.empty()) continue;
     if (other.kind == h.kind) {
       fewest = std::min(fewest, other.count);
@@ -243,6 +244,46 @@ std::string module_sentence(const Diagnosis& d) {
   return "Missing: " + names + ".";
 }
 
+namespace {
+
+// All fitted hypotheses, the most likely first.
+std::vector<Alternative> alternatives_of(const ModuleAnswer& answer) {
+  std::vector<Alternative> all;
+  for (size_t i = 0; i < answer.trials.size(); ++i) {
+    const ModuleHypothesis& h = answer.hypotheses[i];
+    Alternative a;
+    for (const size_t c : answer.trials[i].candidates) {
+      if (!answer.hypotheses[c].kind.empty()) a.kinds.push_back(answer.hypotheses[c].kind);
+    }
+    a.label = h.label;
+    a.log_evidence_relative = answer.joint[i].log_evidence - answer.joint.front().log_evidence;
+    a.holdout_chi2_per_sample = answer.trials[i].holdout_chi2_per_sample;
+    a.remark = answer.trials[i].objection;
+    a.chosen = i == answer.decision.chosen;
+    all.push_back(std::move(a));
+  }
+  std::ranges::stable_sort(all, [](const Alternative& a, const Alternative& b) {
+    return a.log_evidence_relative > b.log_evidence_relative;
+  });
+  return all;
+}
+
+Holdout holdout_of(const ModuleFitter& fitter, const ModuleAnswer& answer, const ModuleData& data) {
+  const size_t chosen = answer.decision.chosen;
+  Holdout held;
+  held.samples = answer.joint.front().fit.samples - answer.trials.front().fit.samples;
+  held.chi2_per_sample_before = answer.trials.front().predictive->chi2_per_sample;
+  held.chi2_per_sample_after = answer.trials[chosen].predictive->chi2_per_sample;
+  held.predictive = answer.trials[chosen].predictive;
+  held.rms_before["current_A"] = held_out_rms_A(fitter, answer, 0, data);
+  held.rms_after["current_A"] = held_out_rms_A(fitter, answer, chosen, data);
+  held.explained_fraction =
+      explained_fraction(held.chi2_per_sample_before, held.chi2_per_sample_after, held.samples);
+  return held;
+}
+
+}  // namespace
+
 Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
                     const ModuleAnswer& answer, const ModuleData& data, const Thresholds& limits) {
   const ModuleFitter fitter(design, nominal, limits);
@@ -267,41 +308,16 @@ Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
       d.effects.push_back(found_in_module(answer, which, limits));
     }
   }
-  const double least = answer.joint.front().log_evidence;
-  for (size_t i = 0; i < answer.trials.size(); ++i) {
-    const ModuleHypothesis& h = answer.hypotheses[i];
-    Alternative a;
-    for (const size_t c : answer.trials[i].candidates) {
-      if (!answer.hypotheses[c].kind.empty()) a.kinds.push_back(answer.hypotheses[c].kind);
-    }
-    a.label = h.label;
-    a.log_evidence_relative = answer.joint[i].log_evidence - least;
-    a.holdout_chi2_per_sample = answer.trials[i].holdout_chi2_per_sample;
-    a.remark = answer.trials[i].objection;
-    a.chosen = i == chosen;
-    d.alternatives.push_back(std::move(a));
-  }
-  std::ranges::stable_sort(d.alternatives, [](const Alternative& a, const Alternative& b) {
-    return a.log_evidence_relative > b.log_evidence_relative;
-  });
+  d.alternatives = alternatives_of(answer);
   d.chi2_per_sample_before = answer.trials.front().fit.chi2_per_sample();
   d.chi2_per_sample_after = answer.trials[chosen].fit.chi2_per_sample();
   d.samples = answer.trials.front().fit.samples;
   d.where.channels.push_back({"current_A", d.chi2_per_sample_before});
-  Holdout held;
-  held.samples = answer.joint.front().fit.samples - d.samples;
-  held.chi2_per_sample_before = answer.trials.front().predictive->chi2_per_sample;
-  held.chi2_per_sample_after = answer.trials[chosen].predictive->chi2_per_sample;
-  held.predictive = answer.trials[chosen].predictive;
-  held.rms_before["current_A"] = squares_of(fitter, answer, 0, data);
-  held.rms_after["current_A"] = squares_of(fitter, answer, chosen, data);
-  held.explained_fraction =
-      explained_fraction(held.chi2_per_sample_before, held.chi2_per_sample_after, held.samples);
-  d.holdout = held;
+  d.holdout = holdout_of(fitter, answer, data);
   for (size_t run = 0; run < data.whole.size(); ++run) {
     d.series.push_back(curve_of(fitter, answer, chosen, data.whole[run], run));
   }
-  if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(held));
+  if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(*d.holdout));
   if (answer.decision.undecided) {
     d.warnings.push_back(
         "an effect is missing, but the recordings do not determine which one: see the "
