@@ -48,25 +48,35 @@ struct NumberedLine {
   std::string text;
 };
 
-// The numbers of a row of at least `fewest_cells`; nothing for another line.
+// The cells that a row of numbers must have.
+struct RowShape {
+  size_t fewest_cells = 1;
+  // Other cells may be texts, which count as NaN, if at least two are numbers.
+  bool has_texts = false;
+};
+
+// The numbers of a row; nothing for another line.
 std::optional<std::vector<double>> numbers_in(const NumberedLine& line, char separator,
-                                              size_t fewest_cells) {
+                                              RowShape shape) {
   std::vector<std::string_view> cells;
   split_cells(line.text, separator, cells);
   std::vector<double> numbers;
-  bool any = false;
+  size_t finite = 0;
   for (const std::string_view cell : cells) {
     const std::optional<double> number = number_of_cell(cell, separator);
-    if (!number) return std::nullopt;
-    any = any || !std::isnan(*number);
-    numbers.push_back(*number);
+    if (!number && !shape.has_texts) return std::nullopt;
+    numbers.push_back(number.value_or(NAN));
+    finite += !std::isnan(numbers.back());
   }
-  if (!any || numbers.size() < fewest_cells) return std::nullopt;
+  if (finite < (shape.has_texts ? 2 : 1) || numbers.size() < shape.fewest_cells) {
+    return std::nullopt;
+  }
   return numbers;
 }
 
 bool is_comment(const NumberedLine& line) {
-  return line.text.front() == '#';
+  const std::string_view text = trimmed(line.text);
+  return text.starts_with('#') || text.starts_with('%') || text.starts_with("//");
 }
 
 // The first lines of a file that are not empty.
@@ -135,18 +145,29 @@ std::string without_blanks(std::string_view name) {
   return joined;
 }
 
+bool has_unit(const std::string& cell) {
+  return read_header_cell(cell).unit.has_value();
+}
+
+// Whether a cell of a header states a unit or is a known name.
+bool names_a_quantity(const std::string& cell) {
+  const HeaderCell read = read_header_cell(cell);
+  return read.unit || !meanings({read.words}, "", read).empty();
+}
+
 // The names in a line above rows of `width` cells. The line may be a comment, or its separator may
-// differ from that of the rows.
+// differ from that of the rows. Further cells are left out if one of the first states a unit.
 Header names_in_line(const NumberedLine& line, char separator, size_t width) {
   std::vector<std::string_view> parts;
   split_cells(line.text, separator, parts);
   if (!is_comment(line) && parts.size() == width) return {{parts.begin(), parts.end()}, false};
   const size_t begin = std::min(line.text.find_first_not_of("#%/ \t"), line.text.size());
   const std::string text(trimmed(std::string_view(line.text).substr(begin)));
-  std::vector<std::string> cells;
+  std::vector<std::string> cells, longer;
   for (const char other : {separator, '\t', ';', ','}) {
     split_cells(text, other, parts);
     if (cells.size() != width) cells.assign(parts.begin(), parts.end());
+    if (longer.empty() && parts.size() > width) longer.assign(parts.begin(), parts.end());
   }
   if (cells.size() != width) {
     cells.clear();
@@ -157,6 +178,10 @@ Header names_in_line(const NumberedLine& line, char separator, size_t width) {
     }
   }
   if (cells.size() != width) cells = split_at_names(text);
+  if (cells.size() != width && !longer.empty()) {
+    longer.resize(width);
+    if (std::ranges::any_of(longer, has_unit)) cells = std::move(longer);
+  }
   if (cells.size() != width) return {};
   if (separator == ' ') std::ranges::transform(cells, cells.begin(), without_blanks);
   return {cells, true};
@@ -181,57 +206,71 @@ Header names_in_numbered_lines(const std::vector<NumberedLine>& lines, size_t fi
   return names;
 }
 
-// The line of names above the rows: the last one that is neither a comment nor a row. A line that
-// contains numbers is the first row of a table with texts if a line of names alone is above it.
+// The line of names above the rows: of the lines that are neither comments nor rows, the last one
+// that names a quantity for each column or, if there is none, the last one. A line that contains
+// numbers is the first row of a table with texts if a line of names alone is above it.
 std::optional<size_t> line_of_names(const std::vector<NumberedLine>& lines, size_t first,
                                     char separator, size_t width) {
-  std::optional<size_t> last;
+  std::optional<size_t> last, without_numbers;
   for (size_t k = first; k-- > 0;) {
-    if (is_comment(lines[k]) || numbers_in(lines[k], separator, 1)) continue;
+    if (is_comment(lines[k]) || numbers_in(lines[k], separator, {})) continue;
     const Header names = names_in_line(lines[k], separator, width);
     const bool has_number = std::ranges::any_of(
         names.cells, [](const std::string& cell) { return number_in(cell).has_value(); });
-    if (!names.cells.empty() && !has_number) return k;
-    if (!last && !has_number) return k;
+    const bool is_header = !names.cells.empty() && !has_number;
+    if (is_header && std::ranges::any_of(names.cells, names_a_quantity)) return k;
+    if (!without_numbers && (is_header || (!last && !has_number))) without_numbers = k;
     if (!last) last = k;
   }
-  return last;
+  return without_numbers ? without_numbers : last;
 }
 
-// Adds the names of the columns to a table whose rows start at `lines[first]`: those of the last
-// line above it that is neither a comment nor a single number or, if that has another number of
-// cells, of the comment above the rows or the last one that states a unit, or of numbered lines.
+// The comment that names the columns: the one directly above the rows if it names a quantity, or
+// else the last one that states a unit, or else the one directly above.
+std::optional<size_t> comment_of_names(const std::vector<NumberedLine>& lines, size_t first,
+                                       char separator, size_t width) {
+  std::optional<size_t> above;
+  for (size_t k = first; k-- > 0;) {
+    if (!is_comment(lines[k]) || numbers_in(lines[k], separator, {})) continue;
+    const Header names = names_in_line(lines[k], separator, width);
+    const bool is_above = k + 1 == first;
+    if (std::ranges::any_of(names.cells, is_above ? names_a_quantity : has_unit)) return k;
+    if (is_above && !names.cells.empty()) above = k;
+  }
+  return above;
+}
+
+// Takes the names of the columns from `lines[k]`, or from the line above it if it contains units.
+void take_names(FileHead& head, const std::vector<NumberedLine>& lines, size_t k, char separator,
+                size_t width) {
+  Header names = names_in_line(lines[k], separator, width), above;
+  if (names.cells.empty()) return;
+  const std::vector<std::string> units = units_in(names.cells);
+  if (!units.empty() && k > 0) above = names_in_line(lines[k - 1], separator, width);
+  const bool has_units = !above.cells.empty() && units_in(above.cells).empty();
+  if (has_units) {
+    --k;
+    names = std::move(above);
+    head.units = units;
+  }
+  head.line = static_cast<int>(lines[k].number);
+  head.header = std::move(names.cells);
+  head.is_split_otherwise = names.is_split_otherwise;
+  if (!head.is_split_otherwise) return;
+  // A stated header has no line of units below it.
+  for (size_t i = 0; i < head.units.size(); ++i) {
+    if (!head.units[i].empty()) head.header[i] += "(" + head.units[i] + ")";
+  }
+  head.units.clear();
+}
+
+// Adds the names of the columns to a table whose rows start at `lines[first]`: those of the line of
+// names or, if that has another number of cells, of a comment, or of numbered lines.
 void add_header(FileHead& head, const std::vector<NumberedLine>& lines, size_t first,
                 char separator, size_t width) {
-  const auto has_unit = [](const std::string& cell) {
-    return read_header_cell(cell).unit.has_value();
-  };
-  const auto above_rows = line_of_names(lines, first, separator, width);
-  for (const bool of_comments : {false, true}) {
-    for (size_t k = first; k-- > 0 && head.header.empty();) {
-      const NumberedLine& line = lines[k];
-      if (of_comments ? !is_comment(line) || numbers_in(line, separator, 1) : k != above_rows) {
-        continue;
-      }
-      Header names = names_in_line(line, separator, width);
-      const bool counts =
-          !of_comments || k + 1 == first || std::ranges::any_of(names.cells, has_unit);
-      if (counts && !names.cells.empty()) {
-        const std::vector<std::string> units = units_in(names.cells);
-        Header above;
-        if (!units.empty() && k > 0) above = names_in_line(lines[k - 1], separator, width);
-        const bool has_units = !above.cells.empty() && units_in(above.cells).empty();
-        if (has_units) head.units = units;
-        head.line = static_cast<int>(lines[has_units ? k - 1 : k].number);
-        head.header = has_units ? above.cells : names.cells;
-        head.is_split_otherwise = (has_units ? above : names).is_split_otherwise;
-        // A stated header has no line of units below it.
-        for (size_t i = 0; head.is_split_otherwise && i < head.units.size(); ++i) {
-          if (!head.units[i].empty()) head.header[i] += "(" + head.units[i] + ")";
-        }
-        if (head.is_split_otherwise) head.units.clear();
-      }
-    }
+  for (const auto find : {line_of_names, comment_of_names}) {
+    const std::optional<size_t> k = find(lines, first, separator, width);
+    if (k && head.header.empty()) take_names(head, lines, *k, separator, width);
   }
   if (!head.header.empty()) return;
   Header numbered = names_in_numbered_lines(lines, first, width);
@@ -242,10 +281,15 @@ void add_header(FileHead& head, const std::vector<NumberedLine>& lines, size_t f
 // The first table with this separator. It has no column names if no line above it has the number of
 // cells of its rows.
 std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char separator,
-                                 size_t fewest_cells) {
+                                 RowShape shape) {
   for (size_t i = 0; i < lines.size(); ++i) {
-    const auto first = numbers_in(lines[i], separator, fewest_cells);
+    const auto first = numbers_in(lines[i], separator, shape);
     if (!first) continue;
+    if (shape.has_texts) {  // a line of prose may contain two numbers
+      const auto second =
+          i + 1 < lines.size() ? numbers_in(lines[i + 1], separator, shape) : std::nullopt;
+      if (!second || second->size() != first->size()) continue;
+    }
     FileHead head;
     head.first_row_line = static_cast<int>(lines[i].number);
     if (i > 0) {
@@ -256,7 +300,7 @@ std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char se
     }
     add_header(head, lines, i, separator, first->size());
     for (; i < lines.size(); ++i) {
-      auto row = numbers_in(lines[i], separator, fewest_cells);
+      auto row = numbers_in(lines[i], separator, shape);
       if (row && row->size() == first->size()) head.rows.push_back(*std::move(row));
     }
     return head;
@@ -265,7 +309,7 @@ std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char se
 }
 
 // Proposed names for a table without a header. The increasing column is the time. One other column
-// is an angle, two are coordinates; more columns get numbers.
+// is an angle, two are coordinates; more columns get numbers, of which a long list shows the last.
 std::string proposed_names(const FileHead& table) {
   const size_t width = table.rows.front().size();
   size_t time = 0;
@@ -276,9 +320,14 @@ std::string proposed_names(const FileHead& table) {
   std::vector<const char*> others;
   if (width == 2) others = {"angle_rad"};
   if (width == 3) others = {"x_m", "y_m"};
+  constexpr size_t short_list = 8;
   std::string names;
   size_t next = 0;
   for (size_t k = 0; k < width; ++k) {
+    if (width > short_list && k > 0 && k + 1 < width && k != time) {
+      if (!names.ends_with("…")) names += ",…";
+      continue;
+    }
     if (k > 0) names += ',';
     if (k == time) {
       names += clock;
@@ -309,16 +358,19 @@ InputError without_header(const std::filesystem::path& path, const FileHead& tab
 
 FileHead head_of(const std::filesystem::path& path, const RecordingOptions& reading) {
   const std::vector<NumberedLine> lines = first_lines(path, reading.header);
-  for (size_t fewest_cells = reading.header.size() == 1 ? 1 : 2; fewest_cells > 0; --fewest_cells) {
-    if (fewest_cells == 1 && reading.header.size() != 1 && !reading.rate_Hz) break;
+  std::vector<RowShape> shapes;
+  if (reading.header.size() != 1) shapes.push_back({.fewest_cells = 2});
+  if (reading.header.size() == 1 || reading.rate_Hz) shapes.push_back({.fewest_cells = 1});
+  shapes.push_back({.fewest_cells = 2, .has_texts = true});
+  for (const RowShape& shape : shapes) {
     std::optional<FileHead> unnamed;
     for (const char separator : {',', ';', '\t', ' '}) {
-      auto table = table_in(lines, separator, fewest_cells);
+      auto table = table_in(lines, separator, shape);
       if (!table) continue;
       if (!table->header.empty()) return *std::move(table);
       if (!unnamed || table->rows.size() > unnamed->rows.size()) unnamed = std::move(table);
     }
-    if (unnamed) throw without_header(path, *unnamed);
+    if (unnamed && !shape.has_texts) throw without_header(path, *unnamed);
   }
   const auto is_number = [](const NumberedLine& line) {
     return !std::isnan(number_of_cell(trimmed(line.text), ';').value_or(NAN));

@@ -377,7 +377,11 @@ TEST_F(Headers, MayBeCommentsOrSeparatedOtherwise) {
       {"# t x y\n# s cm cm\n", "%d\t%d\t%d\n"},
       {"t [s];x [cm];y [cm]\n", "%d %d %d\n"},
       {"//run 3\n//Time ( s )  x ( cm )  y ( cm )\n", "%d  %d  %d\n"},
-      {"t / s  x / cm  y / cm\n# 0 1 2\n", "%d  %d  %d\n"}};
+      {"t / s  x / cm  y / cm\n# 0 1 2\n", "%d  %d  %d\n"},
+      {"%t [s]\tx [cm]\ty [cm]\n%3/2/2017 4:35 PM\n", "%d\t%d\t%d\n"},
+      {"t [s]\tx [cm]\ty [cm]\n\t\tDate: 3/2/2017\n", "%d\t%d\t%d\n"},
+      {"t [s],x [cm],y [cm],comment\n", "%d,%d,%d\n"},
+      {"id,t [s],state,x [cm],y [cm]\n", "7,%d,COAST,%d,%d\n"}};
   for (const auto& [header, row] : files) {
     std::string text = header;
     for (int i = 0; i < 30; ++i) text += printed(row, i, i * i, 100 - i);
