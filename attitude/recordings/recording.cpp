@@ -118,10 +118,25 @@ class RecordingReader {
     }
   }
 
+  // Whether the time of the last row is wrong: two successive rows lie between those before it and
+  // itself. The first of the two is left out by then.
+  bool is_after_wrong_time(double time_s) {
+    const std::vector<double>& t = recording_.time_s;
+    const double before_s = t.size() > 1 ? t[t.size() - 2] : -INFINITY;
+    const bool is_between = !t.empty() && time_s > before_s && time_s < t.back();
+    const bool is_second = is_between && fallen_s_ && time_s > *fallen_s_;
+    fallen_s_ = is_between && !is_second ? std::optional(time_s) : std::nullopt;
+    return is_second;
+  }
+
   // Appends the time of a row; false if it does not increase.
   bool take_time(double time_s, int64_t line) {
     RecordingReport& report = recording_.report;
-    if (!recording_.time_s.empty() && time_s <= recording_.time_s.back()) {
+    if (is_after_wrong_time(time_s)) {
+      ++report.backward_times;
+      recording_.time_s.pop_back();
+      for (Channel& channel : recording_.channels) channel.values.pop_back();
+    } else if (!recording_.time_s.empty() && time_s <= recording_.time_s.back()) {
       if (time_s == recording_.time_s.back()) {
         if (++report.repeated_times == 1) report.first_repeated_line = line;
       } else if (++report.backward_times == 1) {
@@ -354,6 +369,7 @@ class RecordingReader {
   std::optional<size_t> time_column_;  // none: rows are counted
   char separator_ = ',';
   int64_t kept_cells_ = 0;
+  std::optional<double> fallen_s_;  // the time of a row left out below the last row's time
   std::optional<InputError> first_malformed_, first_without_time_;
   int64_t rows_of_times_ = 0;
 };

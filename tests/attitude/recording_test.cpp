@@ -83,6 +83,17 @@ TEST(Recording, CompressedFilesAreSmallerAndRepeatable) {
   EXPECT_EQ(gzip(text), gzip(text));
 }
 
+// A clock that runs freely at first, one wrong reading of it, two exchanged rows, and two runs.
+TEST(Recording, AWrongTimeDoesNotDiscardTheRowsAfterIt) {
+  const auto times = [](const std::string& column) {
+    return read("t_s;gyro_x_rad_s\n" + column).time_s;
+  };
+  EXPECT_THAT(times("3936;1\n0.1;2\n0.2;3\n0.3;4\n"), ElementsAre(0.2, 0.3));
+  EXPECT_THAT(times("0;1\n3936;2\n0.2;3\n0.3;4\n0.4;5\n"), ElementsAre(0.0, 0.3, 0.4));
+  EXPECT_THAT(times("0;1\n0.2;2\n0.1;3\n0.3;4\n"), ElementsAre(0.0, 0.2, 0.3));
+  EXPECT_THAT(times("0;1\n1;2\n2;3\n0;4\n1;5\n2;6\n"), ElementsAre(0.0, 1.0, 2.0));
+}
+
 TEST(Recording, RealFilesAreMendedAndEverythingIsCounted) {
   const Recording r = read(
       "\xef\xbb\xbfLab notebook, 3 May\r\n# a comment, with commas\r\n"
