@@ -272,10 +272,27 @@ void infer_one_axis(Machine& m) {
   if (law != RestoringLaw::spring) m.observe_as(Topology::one_axis, Vec3::UnitX());
 }
 
-// The body axis that is nearest to the line along which nearly all of the squared rate lies.
-// Returns nothing if there is no such line.
-std::optional<int> axis_of_swing(const std::vector<Observation>& runs) {
-  constexpr double across = 0.2;
+// Whether the rates have no mean, as those of a swing. A free body rotates in one sense about one
+// of its principal axes (Poinsot).
+bool has_no_mean_rate(const std::vector<Observation>& runs) {
+  constexpr double none = 0.15;  // of the rms; tumbling bodies have 0.4 and more
+  Vec3 sum = Vec3::Zero();
+  double squares = 0.0, count = 0.0;
+  for (const Observation& seen : runs) {
+    for (const Vec3& rate : seen.gyro_rad_s) {
+      if (!rate.allFinite()) continue;
+      sum += rate;
+      squares += rate.squaredNorm();
+      ++count;
+    }
+  }
+  return sum.squaredNorm() < none * none * squares * count;
+}
+
+// The body axis that is nearest to the line along which nearly all of the rate lies. `across`: the
+// largest rate across this line, as a fraction of that along it. Returns nothing if there is no
+// such line.
+std::optional<int> axis_of_swing(const std::vector<Observation>& runs, double across) {
   Mat3 squares = Mat3::Zero();
   for (const Observation& seen : runs) {
     for (const Vec3& rate : seen.gyro_rad_s) {
@@ -349,7 +366,8 @@ void infer_machine(Machine& m) {
       "bearing or with a weight off the centre it is \"tabletop\".";
   if (!m.sees_attitude()) {
     m.observe_as(Topology::free);
-    if (const std::optional<int> swung = axis_of_swing(m.runs)) {
+    const bool is_held = has_no_mean_rate(m.runs);
+    if (const std::optional<int> swung = axis_of_swing(m.runs, is_held ? 0.5 : 0.2)) {
       m.observe_as(Topology::one_axis, Vec3::Unit(*swung));
       if (infer_oscillation_from_rates(m, *swung,
                                        std::string("three rates along one line, that about ") +
@@ -360,6 +378,13 @@ void infer_machine(Machine& m) {
       m.observe_as(Topology::free);
     }
     const std::optional<int> axis = only_axis(m.runs);
+    if (!axis && is_held) {
+      m.why =
+          "three rates without a mean: a free body would keep its sense of rotation about one "
+          "axis. "
+          "Something carries it.";
+      m.observe_as(Topology::tabletop);
+    }
     if (!axis) return;
     m.why = std::string("three rates, of which that about ") + "xyz"[*axis] +
             " is all but a twentieth: it turns about one axis.";

@@ -135,8 +135,9 @@ std::optional<Circle> circle_of(const Recording& recording) {
 
 std::optional<Oscillation> oscillation_of(const Recording& recording,
                                           const Eigen::Vector2d& noise_m) {
-  constexpr size_t fewest_half_periods = 6;
+  constexpr size_t fewest_half_periods = 6, fewest_of_clear = 3;
   constexpr double least_fullness = 0.58, noise_levels = 3.0, fewest_readings = 3.0, regular = 0.65;
+  constexpr double clear = 20.0;  // noise levels of an amplitude that needs fewer half-periods
   Oscillation found;
   for (Eigen::Index axis = 0; axis < 2; ++axis) {
     const Channel* coordinate = recording.find(axis == 0 ? "x_m" : "y_m");
@@ -155,7 +156,8 @@ std::optional<Oscillation> oscillation_of(const Recording& recording,
       farthest_m = std::max(farthest_m, std::abs(value));
     }
     const std::vector<Passage> passed = passages(time_s, value_m, noise_levels * noise_m[axis]);
-    if (passed.size() <= fewest_half_periods) continue;
+    const bool is_clear = farthest_m > clear * noise_m[axis];
+    if (passed.size() <= (is_clear ? fewest_of_clear : fewest_half_periods)) continue;
     std::vector<double> between_s, readings;
     double sum_m = 0.0, full_m = 0.0;
     for (size_t i = 1; i < passed.size(); ++i) {
