@@ -195,6 +195,22 @@ bool is_watched(const NominalModel& nominal, const RecordedData& data) {
          (seen.has(Scalar::position_x) && seen.has(Scalar::position_y));
 }
 
+// Whether a model with names, fitted with the residual as noise, also describes the recordings
+// better than the nominal model with the noise of the readings, and does not predict the held-out
+// data much worse.
+bool is_better_at_readings(const Fit& named, const Fit& nominal, const RecordedData& data,
+                           const Thresholds& limits) {
+  const auto chi2 = [&](const Fit& fit, const std::vector<Observation>& runs) {
+    const double found = propagate_model(fit, runs, limits).chi2;
+    return std::isfinite(found) ? found : inference::infinity;
+  };
+  if (!(chi2(named, data.train) < chi2(nominal, data.train))) return false;
+  if (data.held.empty()) return true;
+  const auto samples = static_cast<double>(propagate_model(nominal, data.held, limits).samples);
+  return chi2(named, data.held) <=
+         limits.decision.max_held_out_growth * std::max(samples, chi2(nominal, data.held));
+}
+
 // Whether the body turns about one axis or slides. A body that turns about three axes has so many
 // uncertain parameters that effects named in the presence of a residual are spurious.
 bool is_simple(const NominalModel& nominal) {
@@ -240,6 +256,9 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
   RecordedData rough = data;
   std::optional<Answer> named =
       identify_with_discrepancy(nominal, rough, options, laws ? &*laws : nullptr);
+  if (named && !is_better_at_readings(named->chosen().fit, nominal_fit, data, limits)) {
+    named.reset();
+  }
   if (named && fine.trials.empty() && is_consistent_with_noise(named->chosen().fit, data)) {
     Answer again = at_noise_of_readings(nominal, data, options, nominal_fit, &named->chosen());
     if (again.decision.verdict != Verdict::unexplained) return again;
@@ -260,9 +279,10 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
                               Among::unscanned, nullptr);
   described.rest_is_noise = true;
   leave_unexplained(described.decision);
-  // A law that cannot be propagated with the noise of the readings describes nothing.
-  if (!std::isfinite(propagate_model(described.chosen().fit, data.train, limits).chi2)) {
+  // A law that is no better than the nominal model at the noise of the readings describes nothing.
+  if (!is_better_at_readings(described.chosen().fit, nominal_fit, data, limits)) {
     described.decision.chosen = 0;
+    described.trials.front().fit = nominal_fit;
   }
   return described;
 }

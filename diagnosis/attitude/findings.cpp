@@ -443,6 +443,7 @@ std::string sentence_of(const Diagnosis& d) {
   if (chosen == d.alternatives.end() || !(before > worth_saying * after)) return text + ".";
   const std::string names = chosen->label.empty() ? joined_text(chosen->kinds, " and ", in_words)
                                                   : in_words(chosen->label);
+  if (names.empty()) return text + ".";
   return text + ". Held out, " + names + " lowers χ² by a factor of " +
          printed("%.3g", before / after) +
          (after > 1.0 + leaves_something ? ", and leaves residuals above the noise." : ".");

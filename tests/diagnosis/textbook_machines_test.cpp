@@ -271,6 +271,27 @@ TEST(TextbookMachines, APendulumByItsRateAlone) {
   EXPECT_THAT(d.warnings, Contains(HasSubstr("also an angular acceleration in rad/s²")));
 }
 
+// An elliptic swing of a telephone, taken for a free body: no effect lowers χ² as it should, so
+// that none is named, however much the segments gain.
+TEST(TextbookMachines, ASwingTakenForAFreeBodyHasNoName) {
+  constexpr double omega = 4.5, interval_s = 0.04, noise_rad_s = 0.01;
+  const auto rate = [&](double most_rad_s, double phase, uint64_t seed) {
+    return noisy(std::string("gyro_") + "xyz"[seed] + "_rad_s",
+                 sampled(interval_s, 200,
+                         [&](double t) { return most_rad_s * std::cos(omega * t + phase); }),
+                 noise_rad_s, seed);
+  };
+  const Diagnosis d =
+      diagnosed(machine("[platform]\ntopology = \"free\"\n[platform.inertia_kg_m2]\n"
+                        "value = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n"
+                        "sigma = [[0, 0.2, 0.2], [0.2, 0.4, 0.2], [0.2, 0.2, 0.4]]\n"
+                        "[sensors.gyro]\nnoise_rad_s = 0.01\n"),
+                interval_s, {rate(2.0, 0.0, 0), rate(0.0, 0.0, 1), rate(0.6, -1.57, 2)});
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+  EXPECT_THAT(kinds_of(d), testing::IsEmpty()) << d.sentence;
+  EXPECT_LE(d.chi2_per_sample_after, d.chi2_per_sample_before);
+}
+
 // A rate that is computed from the angle adds no information; a rate with independent errors does.
 TEST(TextbookMachines, ARateComputedFromTheAngleIsLeftOut) {
   constexpr double k = 21.5, viscous = 0.16, interval_s = 0.01;
