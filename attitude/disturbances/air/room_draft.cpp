@@ -20,11 +20,12 @@ DisturbanceKind kind() {
   return {.name = "room_draft",
           .summary = "a steady draught: a torque constant in the lab",
           .read = read_law<RoomDraft, Stage::torque, torque_lab>,
-          .screening = {.parametrisations =
-                            {{"a steady draught exerts a torque that is constant in the laboratory",
-                              {EffectKey::vector(torque_lab.name, 5e-6)}}},
-                        .needs = Requirement::laboratory,
-                        .steady = true},
+          .screening =
+              {.parametrisations =
+                   {{"a torque that is constant in the laboratory: a steady draught, or a drive",
+                     {EffectKey::vector(torque_lab.name, 5e-6)}}},
+               .needs = Requirement::laboratory,
+               .steady = true},
           .keys = {torque_lab}};
 }
 

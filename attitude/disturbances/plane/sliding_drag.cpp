@@ -16,16 +16,15 @@ struct SlidingDrag final : ForceLaw<SlidingDrag> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "sliding_drag",
-      .summary = "viscous drag of a sliding body, linear in the speed",
-      .read = read_law<SlidingDrag, Stage::torque, coefficient>,
-      .screening = {.parametrisations = {{"the air film drags on a sliding body, in proportion to "
-                                          "its speed",
-                                          {EffectKey::not_negative(coefficient.name, 1e-2)}}},
-                    .needs = Requirement::plane},
-      .budget = {.reason_against = "a force, not a torque"},
-      .keys = {coefficient}};
+  return {.name = "sliding_drag",
+          .summary = "viscous drag of a sliding body, linear in the speed",
+          .read = read_law<SlidingDrag, Stage::torque, coefficient>,
+          .screening = {.parametrisations = {{"viscous drag on a sliding body, by an air film or a "
+                                              "liquid, in proportion to its speed",
+                                              {EffectKey::not_negative(coefficient.name, 1e-2)}}},
+                        .needs = Requirement::plane},
+          .budget = {.reason_against = "a force, not a torque"},
+          .keys = {coefficient}};
 }
 
 }  // namespace photorque::kinds::sliding_drag
