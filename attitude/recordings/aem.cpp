@@ -26,7 +26,7 @@ struct Keyword {
 };
 constexpr std::array<Keyword, 18> keywords = {{
     {"OBJECT_NAME", &Segment::object_name, true},
-    {"OBJECT_ID", &Segment::object_id, true},
+    {"OBJECT_ID", &Segment::object_id, false},
     {"CENTER_NAME", &Segment::center_name, false},
     {"REF_FRAME_A", &Segment::ref_frame_a, true},
     {"REF_FRAME_B", &Segment::ref_frame_b, true},
