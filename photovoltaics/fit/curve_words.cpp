@@ -94,9 +94,14 @@ Named qualified(const std::string& cell) {
     if (found.column != columns && !found.unit) found.unit = unit_named(found.column, word);
     if (found.unit) continue;
     Column of_word = joined_symbol(word);
+    // Without a number: "Current1". A short word with a number is another symbol.
+    constexpr size_t shortest = 4;
+    const std::string_view stem = word.substr(0, word.find_last_not_of("0123456789") + 1);
     for (const auto& [column, list] : names) {
       const bool needed = column == voltage || column == current;
-      if (needed && is_one_of(word, list)) of_word = column;
+      const bool is_name =
+          is_one_of(word, list) || (stem.size() >= shortest && is_one_of(stem, list));
+      if (needed && is_name) of_word = column;
     }
     if (of_word == columns && is_qualifier(word)) continue;
     if (of_word == columns || found.column != columns) return {};

@@ -210,6 +210,7 @@ TEST(PhotovoltaicFit, FilesOfInstrumentsAreRead) {
            {"voltage_V,current_A\n0,1;0,5\n0,2;0,4\n"},
            {"Voltage (V),Current (A),Monitor (V)\n0.1,0.5,9\n0.2,0.4,9\n"},
            {"Potential (V),J (mA cm⁻²)\n0.1,500\n0.2,400\n"},
+           {"2/25/2021 5:04 PM\nVoltage\tCurrent1\n0.1\t0.5\n0.2\t0.4\n"},
            {"voltage_mV,current_mA\n100,500\n150,NaN\n200,400\n250,9.91E37\n"},
            {"voltage_V,current_A,irradiance_W_m2,Temperature "
             "(C)\n0.1,0.5,900,24\n0.2,0.4,1100,26\n",
