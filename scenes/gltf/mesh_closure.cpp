@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/numerics/connected.h"
@@ -12,7 +13,9 @@ namespace {
 
 struct Edge {
   uint32_t low, high;
-  auto operator<=>(const Edge&) const = default;
+  bool is_forward;  // whether its triangle goes from `low` to `high`
+
+  auto ends() const { return std::pair(low, high); }
 };
 
 std::vector<Edge> edges_of(const Mesh& mesh, const std::vector<uint32_t>& first) {
@@ -21,10 +24,10 @@ std::vector<Edge> edges_of(const Mesh& mesh, const std::vector<uint32_t>& first)
   for (const auto& triangle : mesh.triangles) {
     for (size_t k = 0; k < 3; ++k) {
       const uint32_t a = first[triangle[k]], b = first[triangle[(k + 1) % 3]];
-      if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
+      if (a != b) edges.push_back({std::min(a, b), std::max(a, b), a < b});
     }
   }
-  std::sort(edges.begin(), edges.end());
+  std::ranges::sort(edges, {}, &Edge::ends);
   return edges;
 }
 
@@ -67,18 +70,22 @@ void add(const Mesh& mesh, MeshClosure& closure) {
   const std::vector<Edge> edges = edges_of(mesh, welded(mesh.vertices_m));
   std::vector<Edge> open;
   size_t distinct = 0;
+  bool has_turned_face = false;
   for (size_t i = 0; i < edges.size();) {
     size_t end = i;
-    while (end < edges.size() && edges[end] == edges[i]) ++end;
+    while (end < edges.size() && edges[end].ends() == edges[i].ends()) ++end;
     ++distinct;
     if (end - i == 1) open.push_back(edges[i]);
+    // Two triangles with one front side go along their common edge in opposite directions.
+    if (end - i == 2 && edges[i].is_forward == edges[i + 1].is_forward) has_turned_face = true;
     i = end;
   }
   ++closure.meshes;
   const bool closed = open.empty() && distinct > 0, few_open = open.size() * open.size() < distinct;
   if (open.empty()) ++closure.closed;
   if (!open.empty() && few_open) ++closure.almost_closed;
-  closure.encloses.push_back(closed || few_open ? 1 : 0);
+  if ((closed || few_open) && has_turned_face) ++closure.with_turned_faces;
+  closure.encloses.push_back((closed || few_open) && !has_turned_face ? 1 : 0);
   closure.open_edges += open.size();
   if (open.size() <= max_open_edges) closure.t_junctions += count_t_junctions(mesh, open);
 }
@@ -110,15 +117,23 @@ MeshClosure closure_of(const Scene& scene) {
 }
 
 std::string describe_closure(const MeshClosure& closure) {
-  if (closure.t_junctions == 0 && closure.almost_closed == 0) return "";
-  return printed(
-             "%zu of %zu meshes are closed; the others have %zu open edges, %zu of them with a "
-             "vertex on them (T-junctions)",
-             closure.closed, closure.meshes, closure.open_edges, closure.t_junctions) +
-         (closure.almost_closed > 0
-              ? printed("; %zu mesh(es) are closed but for a few edges", closure.almost_closed)
-              : "") +
-         ": light may leak there";
+  std::string text;
+  if (closure.t_junctions > 0 || closure.almost_closed > 0) {
+    text = printed(
+        "%zu of %zu meshes are closed; the others have %zu open edges, %zu of them with a vertex "
+        "on them (T-junctions)",
+        closure.closed, closure.meshes, closure.open_edges, closure.t_junctions);
+    if (closure.almost_closed > 0) {
+      text += printed("; %zu mesh(es) are closed but for a few edges", closure.almost_closed);
+    }
+    text += ": light may leak there";
+  }
+  if (closure.with_turned_faces > 0) {
+    text += printed("%s%zu closed mesh(es) have neighbouring faces with opposite front sides: %s",
+                    text.empty() ? "" : "; ", closure.with_turned_faces,
+                    "light inside of them is not reported");
+  }
+  return text;
 }
 
 }  // namespace photorque

@@ -23,13 +23,17 @@ struct MeshClosure {
   // for the rim of a square sheet: probably meant to be closed. (A disc of many rings also has
   // fewer; the count is used only for notices.)
   size_t almost_closed = 0;
-  std::vector<uint8_t> encloses;  // per mesh: closed or almost closed, with a volume
+  // Closed or almost closed meshes in which two neighbouring triangles have opposite front sides:
+  // their inside is not defined.
+  size_t with_turned_faces = 0;
+  // Per mesh: closed or almost closed, with a volume and without turned faces.
+  std::vector<uint8_t> encloses;
 };
 
 // Counts for all meshes. T-junctions are not searched in meshes with more than 100,000 open edges.
 MeshClosure closure_of(const Scene& scene);
 
-// One line of text if there are cracks; empty for closed bodies and plain sheets.
+// One line of text if there are cracks or turned faces; empty for closed bodies and plain sheets.
 std::string describe_closure(const MeshClosure& closure);
 
 }  // namespace photorque

@@ -52,6 +52,17 @@ TEST(MeshClosure, WeldsCornersThatExportersSplit) {
   EXPECT_EQ(closure_of(scene_of(split)).open_edges, 3u);
 }
 
+// A closed body whose faces do not agree on their front sides has no inside.
+TEST(MeshClosure, FindsTurnedFaces) {
+  Mesh mesh = fixtures::box(Vec3(0, 0, 0), Vec3(1, 1, 1));
+  EXPECT_EQ(closure_of(scene_of(mesh)).with_turned_faces, 0u);
+  std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
+  const MeshClosure closure = closure_of(scene_of(mesh));
+  EXPECT_EQ(closure.with_turned_faces, 1u);
+  EXPECT_EQ(closure.encloses, std::vector<uint8_t>{0});
+  EXPECT_THAT(describe_closure(closure), testing::HasSubstr("opposite front sides"));
+}
+
 // The rim of a fine sheet has few of its edges: it is a sheet all the same.
 TEST(MeshClosure, AFineSheetEnclosesNothing) {
   constexpr uint32_t side = 40;
