@@ -82,10 +82,13 @@ GltfModel read_cad_bytes(const std::string& bytes, const std::string& file, CadF
   const std::string name = std::filesystem::path(file).stem().string();
   std::vector<cad::Part> parts = format == CadFormat::stl ? cad::read_stl(bytes, file, name)
                                                           : cad::read_obj(bytes, file, name);
+  const std::set<std::string> described = described_materials(options);
   std::set<std::string> materials;
   for (cad::Part& part : parts) {
     part.name = clean_text(part.name);
     part.material = clean_text(part.material);
+    // STL has no materials: a solid may have that of its own name.
+    if (format == CadFormat::stl && described.contains(part.name)) part.material = part.name;
     materials.insert(part.material);
   }
   const std::string text = gltf_text(as_gltf(std::move(parts), conventions));
@@ -96,7 +99,6 @@ GltfModel read_cad_bytes(const std::string& bytes, const std::string& file, CadF
       text, file, [](const std::string&) { return std::nullopt; }, inside);
   // The input is the file that was read, not the converted model.
   model.inputs.front() = {file, content_hash(bytes)};
-  const std::set<std::string> described = described_materials(options);
   for (const std::string& material : materials) {
     if (described.contains(material)) continue;
     model.notices.push_back("material '" + material +

@@ -26,9 +26,10 @@ double metres_of_unit(const std::string& unit);
 std::vector<std::string> cad_units();
 
 // Makes one node per part (part.h), with the part's name. Its material has the name in the file or,
-// if there is none, the file name without folder and ending. Materials that the experiment does not
-// describe absorb half of the light and scatter the other half, with a notice. Throws InputError
-// like read_stl(), read_obj() and read_gltf().
+// if there is none, the file name without folder and ending; for a solid of an STL file, the name
+// of the solid if the experiment describes a material of this name. Materials that the experiment
+// does not describe absorb half of the light and scatter the other half, with a notice. Throws
+// InputError like read_stl(), read_obj() and read_gltf().
 GltfModel read_cad(const std::filesystem::path& path, const CadConventions& conventions,
                    const GltfOptions& options = {});
 

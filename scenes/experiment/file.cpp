@@ -202,12 +202,16 @@ std::optional<CadConventions> read_cad_conventions(const Settings& scene,
     }
     return std::nullopt;
   }
-  if (scene.has(scene_key::metres_per_unit)) {
-    throw scene.error(scene_key::metres_per_unit, "an STL or OBJ file", "its unit: unit = \"mm\"");
-  }
-  const std::vector<std::string> units = cad_units();
   CadConventions conventions;
-  conventions.metres_per_unit = metres_of_unit(units[scene.choice("unit", units)]);
+  if (scene.has(scene_key::metres_per_unit)) {
+    if (scene.has("unit")) {
+      throw scene.error(scene_key::metres_per_unit, "unit and metres_per_unit", "one of them");
+    }
+    conventions.metres_per_unit = scene.get(scene_key::metres_per_unit);
+  } else {
+    const std::vector<std::string> units = cad_units();
+    conventions.metres_per_unit = metres_of_unit(units[scene.choice("unit", units)]);
+  }
   conventions.y_is_up = scene.get(scene_key::up) == 1;
   return conventions;
 }

@@ -27,7 +27,7 @@ Key scene_table() {
   return scene.of({file,
                    Key::choice("unit", unit_choices(),
                                "unit of length of an STL or OBJ file, which states none; required "
-                               "for these, not allowed for glTF")
+                               "for these without `metres_per_unit`, not allowed for glTF")
                        .optional(),
                    up, metres_per_unit, centre_of_rotation, textures, allow_outside, bands});
 }

@@ -17,9 +17,10 @@ inline constexpr TextKey file("file",
 inline constexpr ChoiceKey up("up", {"z", "y"}, 0,
                               "axis of an STL or OBJ file that points up at zero tilt; z: the axes "
                               "of the file are those of the body, y: as in glTF");
-inline constexpr NumberKey metres_per_unit(
-    "metres_per_unit", 1.0, Range::positive(),
-    "scale of a glTF file's lengths: 0.001 for a model in millimetres");
+inline constexpr NumberKey metres_per_unit("metres_per_unit", 1.0, Range::positive(),
+                                           "scale of the lengths of the file: 0.001 for a glTF "
+                                           "model in millimetres, 0.1 for an STL or OBJ "
+                                           "file in units of a CubeSat");
 inline constexpr Vec3Key centre_of_rotation(
     "centre_of_rotation_m", {0.0, 0.0, 0.0},
     "position of the centre of rotation in the model, body axes (z up); it becomes the origin");

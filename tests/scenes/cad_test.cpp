@@ -13,6 +13,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 const std::filesystem::path seeds =
     std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "tests/fuzz/seeds";
@@ -106,6 +107,14 @@ TEST(Stl, TextAndBinaryOfOneBodyAreTheSame) {
   const Extent all = extent_of(text.scene);
   EXPECT_NEAR(all.area_m2, binary.area_m2 + 5.5, 1e-12);
   EXPECT_EQ(all.triangles, binary.triangles + 1);
+}
+
+TEST(Stl, ASolidMayHaveTheMaterialOfItsName) {
+  const Settings black = test::settings_of({{"name", {"tetra hedron"}}, {"absorptance", {1.0}}});
+  const GltfModel model =
+      read_cad(seeds / "stl" / "tetrahedron_text.stl", {1.0}, {.materials = {black}});
+  EXPECT_EQ(model.scene.instances[0].material, "tetra hedron");
+  EXPECT_EQ(model.scene.instances[1].material, "tetrahedron_text");
 }
 
 // Keywords in capitals, a byte order mark, all on one line, and a name that holds keywords.
@@ -322,8 +331,9 @@ TEST(Cad, ExperimentsStateTheUnit) {
               HasSubstr("scene.unit: found nothing, expected one of \"mm\""));
   EXPECT_THAT(refusal_of_scene("file = \"house.OBJ\"\nunit = \"yd\""),
               HasSubstr("lab.toml:3: scene.unit: found \"yd\""));
-  EXPECT_THAT(refusal_of_scene("file = \"house.obj\"\nmetres_per_unit = 0.001"),
-              HasSubstr("lab.toml:3: scene.metres_per_unit: found an STL or OBJ file"));
+  EXPECT_THAT(refusal_of_scene("file = \"house.obj\"\nmetres_per_unit = 0.1"), IsEmpty());
+  EXPECT_THAT(refusal_of_scene("file = \"house.obj\"\nmetres_per_unit = 0.1\nunit = \"m\""),
+              HasSubstr("lab.toml:3: scene.metres_per_unit: found unit and metres_per_unit"));
   const std::string gltf = "file = \"../gltf/lights.gltf\"\n";
   EXPECT_THAT(refusal_of_scene(gltf + "unit = \"mm\""),
               HasSubstr("lab.toml:3: scene.unit: found a glTF file"));
