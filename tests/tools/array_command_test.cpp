@@ -4,6 +4,7 @@
 #include <string>
 
 #include "attitude/recordings/text_lines.h"
+#include "core/text/parse.h"
 #include "tests/outside.h"
 #include "tests/tools/command_test.h"
 
@@ -68,6 +69,33 @@ TEST_F(ArrayCommand, TwinModulesAreOneCircuit) {
     const Outcome got = succeed("power " + at("doubled.toml") + " --json --out " + at("out"));
     EXPECT_THAT(got.out, HasSubstr("22.272")) << circuit;
   }
+}
+
+// A row of the CEC library (SAM 2021.12.02), which lists 210.148 W, as printed and without a
+// change.
+TEST_F(ArrayCommand, AModuleOfALibraryHasItsListedPowerInSunlight) {
+  write("cec.csv",
+        "Name,Technology,STC,A_c,N_s,I_sc_ref,V_oc_ref,I_mp_ref,V_mp_ref,alpha_sc,beta_oc,T_NOCT,"
+        "a_ref,I_L_ref,I_o_ref,R_s,R_sh_ref,Adjust,gamma_r,Version\n"
+        "Advance Power API-P210,Multi-c-Si,210.148,1.638,60,7.6,35.94,7.09,29.64,0.00437608,"
+        "-0.120111,47.6,1.52964,7.60815,4.66E-10,0.247801,231.181,12.9624,-0.4501,"
+        "SAM 2021.12.02\n");
+  const Outcome printed_keys = fit("module_file = \"cec.csv\"\nmodule_name = \"API-P210\"\n");
+  std::string cell, array;
+  for (const std::string_view line : lines_of(printed_keys.out)) {
+    if (line.find(" = ") == line.npos) continue;
+    (line.find("quantum") == line.npos ? cell : array) += std::string(line) + "\n";
+  }
+  write("plate.obj", "o plate\nv 0 0 0\nv 1.638 0 0\nv 1.638 1 0\nv 0 1 0\nusemtl m\nf 1 2 3 4\n");
+  write(
+      "module.toml",
+      "[scene]\nfile = \"plate.obj\"\nunit = \"m\"\n[[material]]\nname = \"m\"\nabsorptance = 1\n"
+      "[[source]]\nkind = \"sun\"\nspectrum = \"AM1.5G\"\ndirection = [0, 0, -1]\n"
+      "angular_radius_deg = 0\n[[receiver]]\nkind = \"flux_map\"\nnode = \"plate\"\n"
+      "bins = [60, 1]\n[trace]\nrays = 16384\n[array]\ncells = [60, 1]\ntemperature_K = 298.15\n" +
+          array + "[array.cell_parameters]\n" + cell);
+  succeed("power " + at("module.toml") + " --out " + at("power"));
+  EXPECT_NEAR(figure("array_power_W", "power"), 210.148, 0.2);
 }
 
 // 500 W/m² on the back with a bifaciality of 0.8 are 400 W/m² on the front (IEC TS 60904-1-2).

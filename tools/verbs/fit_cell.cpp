@@ -12,6 +12,7 @@
 #include "core/settings/settings.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
+#include "photovoltaics/cell/response.h"
 #include "photovoltaics/fit/conditions.h"
 #include "photovoltaics/fit/curve_text.h"
 #include "photovoltaics/fit/fit.h"
@@ -214,12 +215,16 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
   return task;
 }
 
+// Scatter over the stated noise above which one diode does not describe the data.
+constexpr double usual_scatter = 3.0;
+
 // Checks the ideality: below 0.5 the curve is sharper than the thermal voltage of a junction
-// allows; above 4 it is a leak.
-void check_ideality(const SingleDiode& d, const FitTask& task) {
+// allows; above 4 it is a leak. Where one diode does not describe the data, as print_misfit() says,
+// the ideality means nothing.
+void check_ideality(const SingleDiode& d, double scatter, const FitTask& task) {
   const double ideality = d.scale_V.value / task.thermal_V();
   constexpr double lowest = 0.5, highest = 4.0;
-  if (ideality >= lowest && ideality <= highest) return;
+  if ((ideality >= lowest && ideality <= highest) || scatter > usual_scatter) return;
   // With fewer cells the ideality of one is larger, but so is its voltage.
   constexpr double junction_V = 0.3;
   if (ideality < lowest && open_circuit_V(task) > junction_V * task.cells_in_series) {
@@ -259,8 +264,7 @@ void check_rms(double rms_A, const FitTask& task) {
 // Warns about a large misfit. Errors are scaled with the scatter, but parameters of an unsuitable
 // model are off by more than these errors.
 void print_misfit(const Console& console, double scatter) {
-  constexpr double usual = 3.0;
-  if (scatter < usual) return;
+  if (scatter < usual_scatter) return;
   console.line(
       "  warning: the scatter is " + readable_number(scatter, 3) +
       " times that of the stated noise: one diode does not describe these data. The errors "
@@ -323,8 +327,8 @@ void print_storage(const Console& console, const ChargeStorage& storage,
 
 Product fit_even_light(const FitTask& task, const Console& console) {
   const SweepFit fit = fit_sweeps(task.sweeps, task.noise);
-  check_ideality(fit.diode, task);
   check_rms(fit.rms_A, task);
+  check_ideality(fit.diode, std::sqrt(fit.variance), task);
   std::vector<CellRow> rows = diode_rows(fit.diode, task);
   const CellCurve cell(fit.diode.parameters(task.temperature_K));
   const ArrayPoint best = best_point(cell, fit.diode.photocurrent_A.value);
@@ -386,10 +390,10 @@ Product fit_several_conditions(const FitTask& given, const Console& console) {
   const ConditionsFit fit = fit_conditions(given.conditions, given.noise, given.shunt_law);
   FitTask task = given;
   task.temperature_K = fit.model.reference.temperature_K;
-  check_ideality(fit.diode, task);
   double worst_A = 0.0;
   for (const ConditionsFit::Curve& curve : fit.curves) worst_A = std::max(worst_A, curve.rms_A);
   check_rms(worst_A, task);
+  check_ideality(fit.diode, std::sqrt(fit.variance), task);
   std::vector<CellRow> rows = diode_rows(fit.diode, task);
   const bool has_gap = fit.gap_error_eV > 0.0, has_light = fit.photocurrent_A_m2_W > 0.0;
   if (has_gap) rows.push_back({"gap_eV", {fit.model.gap_eV, fit.gap_error_eV}});
@@ -436,7 +440,7 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
       fit_rated_points(task.datasheet, task.slopes, guess_V, task.tolerance, task.shunt_law);
   FitTask at_first = task;
   at_first.temperature_K = task.datasheet[0].temperature_K;
-  check_ideality(fit.diode, at_first);
+  check_ideality(fit.diode, fit.rms_over_known, at_first);
   // The search for the gap ends at these limits for any slope.
   constexpr double lowest_eV = 0.3, highest_eV = 4.0;
   if (!(fit.model.gap_eV > lowest_eV && fit.model.gap_eV < highest_eV)) {
@@ -457,8 +461,7 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
       (task.datasheet.size() == 1 ? "; one point leaves the ideality as assumed" : ""));
   print_shunt_law(console, fit.shunt_law,
                   fit.other_rms > 0.0 ? "; the other law leaves " + show(fit.other_rms) : "");
-  constexpr double usual = 3.0;
-  if (fit.rms_over_known > usual && task.datasheet.size() > 1) {
+  if (fit.rms_over_known > usual_scatter && task.datasheet.size() > 1) {
     console.line("  warning: the figures are off by " + show(fit.rms) + " (rms), " +
                  show(fit.rms_over_known) +
                  " times their rounding: one diode with such a shunt does not describe them; "
@@ -505,6 +508,16 @@ Product fit_uneven_light(const FitTask& task, const Console& console) {
   return product;
 }
 
+// The peak of silicon's quantum efficiency that gives the photocurrent of a cell of the module in
+// AM1.5G sunlight. Requires the area of the module.
+double efficiency_peak_of(const ListedModule& module) {
+  const WeighedSpectrum sunlight[] = {{{.shape = Spectrum::Shape::am15g}}};
+  const double amperes_W =
+      band_responsivity_A_W(silicon_quantum_efficiency(1.0), Bands{}, sunlight)[0];
+  return module.photocurrent_A /
+         (amperes_W * module.rated.irradiance_W_m2 * module.cell.reference_area_m2);
+}
+
 // Lists the cell of a library module as keys, with its listed and computed ratings.
 Product list_module(const ListedModule& module, const Console& console) {
   const CellParameters& p = module.cell.reference;
@@ -539,6 +552,13 @@ Product list_module(const ListedModule& module, const Console& console) {
   console.heading("One cell, for [array.cell_parameters]");
   for (const CellRow& row : rows) print_key(console, row.name.c_str(), row.estimate.value);
   if (!has_area) console.line("  reference_area_m2 =   # to be filled in: the area of one cell");
+  if (has_area) {
+    const double peak = efficiency_peak_of(module);
+    console.heading("For [array]: this photocurrent in AM1.5G sunlight");
+    print_key(console, "quantum_efficiency_peak", peak);
+    if (peak > 1.0) console.line("  warning: above 1: the listed area is too small");
+    rows.push_back({"quantum_efficiency_peak", {peak}});
+  }
   rows.push_back({"photocurrent_A", {module.photocurrent_A}});
   rows.push_back({"maximum_power_W", {given_W}});
   Product product = parameter_product(rows);
