@@ -199,7 +199,7 @@ TEST(ModuleDiagnosis, FindsNothingConsistentWithAReferenceThatIsNoDiode) {
   EXPECT_THAT(d.sentence, testing::HasSubstr("one diode describes the reference only to"));
 }
 
-// Eight points to 16 % beyond open circuit, with 5 mV of noise, change the current by up to 15 A.
+// Eight points to 16 % beyond open circuit, on a slope of 15 A/V and with 5 mV of noise.
 TEST(ModuleDiagnosis, LeavesPointsFarBeyondOpenCircuitOut) {
   const ArrayCurve curve = Network(0).curve();
   std::mt19937 random(5);
@@ -207,9 +207,9 @@ TEST(ModuleDiagnosis, LeavesPointsFarBeyondOpenCircuitOut) {
   const auto overdriven = [&](unsigned seed) {
     LightRecording r = measured(curve, seed);
     for (int i = 1; i <= 8; ++i) {
-      const double V = curve.open_circuit_V() * (1.0 + 0.02 * i);
-      r.voltage_V.push_back(V + noise_V(random));
-      r.current_A.push_back(curve.current_A(V));
+      const double beyond_V = 0.02 * i * curve.open_circuit_V();
+      r.voltage_V.push_back(curve.open_circuit_V() + beyond_V + noise_V(random));
+      r.current_A.push_back(-15.0 * beyond_V);
       r.temperature_K.push_back(298.15);
       r.lab_from_body.push_back(Quat::Identity());
       r.sweep.push_back(0);
