@@ -5,7 +5,7 @@ make.py OUT [CASE ...]     CASE: light, draught, tilt, cell, nothing
 
 A tabletop on an air bearing swings and turns under nine lamps; an array of 6 x 3 cells in series, without bypass
 diodes, works at its maximum. (With them two maxima are equal at some attitudes, and noise decides between them.) Nothing here is the program's: the motion is Euler's equations by
-Runge and Kutta's formula, a lamp 19 points of its aperture, a cell 4 x 4 points, the circuit Newton's steps on
+Runge and Kutta's formula, a lamp 19 points of its aperture, a cell 3 x 3 points, the circuit Newton's steps on
 the diode equation and the highest maximum the best of a fine grid, refined by finer ones. Needs NumPy.
 """
 import gzip
@@ -104,17 +104,17 @@ def per_steradian():
 
 
 lamps = [((i - 1) * lamp_pitch[0], (j - 1) * lamp_pitch[1]) for j in range(3) for i in range(3)]
-aperture = [(x + dx, y + dy) for x, y in lamps for dx, dy in disc_points()]
+aperture = np.array([(x + dx, y + dy) for x, y in lamps for dx, dy in disc_points()])
 peak = per_steradian() * lamp_power / 19
 
 
 def cell_points():
     """Gauss's points of every cell on the plate, and their weights: arrays (cells, points, 2) and (points,)."""
-    nodes, weights = np.polynomial.legendre.leggauss(4)
+    nodes, weights = np.polynomial.legendre.leggauss(3)
     x = (np.arange(columns)[:, None] + 0.5 + 0.5 * nodes - columns / 2) * side
     y = (np.arange(rows)[:, None] + 0.5 + 0.5 * nodes - rows / 2) * side
     x, y = np.broadcast_arrays(x[None, :, :, None], y[:, None, None, :])
-    return np.stack((x, y), axis=-1).reshape(rows * columns, 16, 2), 0.25 * np.outer(weights, weights).ravel()
+    return np.stack((x, y), axis=-1).reshape(rows * columns, 9, 2), 0.25 * np.outer(weights, weights).ravel()
 
 
 points_m, point_weights = cell_points()
@@ -124,11 +124,13 @@ def cells_light(q):
     """Mean irradiance of each cell [W/m2], lamps at full power."""
     m = np.array(matrix(q))
     places = points_m @ m[:, :2].T + height * m[:, 2]
-    away = places[:, :, None] - np.array([(x, y, lamp_height) for x, y in aperture])
-    r = np.sqrt(np.sum(away * away, axis=-1))
-    angle = np.arctan2(np.hypot(away[..., 0], away[..., 1]), -away[..., 2])
-    arrives = -(away @ m[:, 2]) / r
-    light = peak * np.sum(np.exp(-4 * math.log(2) * (angle / fwhm) ** 2) * arrives / r**2, axis=-1)
+    x, y = (places[..., k, None] - aperture[:, k] for k in range(2))
+    below = lamp_height - places[..., 2, None]
+    across2 = x * x + y * y
+    r2 = across2 + below * below
+    angle = np.arctan(np.sqrt(across2) / below)
+    arrives = (below * m[2, 2] - x * m[0, 2] - y * m[1, 2]) / np.sqrt(r2)
+    light = peak * np.sum(np.exp(-4 * math.log(2) / fwhm**2 * angle * angle) * arrives / r2, axis=-1)
     return (light @ point_weights).tolist()
 
 
