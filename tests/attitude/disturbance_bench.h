@@ -113,8 +113,8 @@ inline std::string sphere_table() {
   std::ostringstream file;
   file.precision(17);
   file << "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
-  for (int azimuth = -180; azimuth <= 180; azimuth += 5) {
-    for (int elevation = -90; elevation <= 90; elevation += 5) {
+  for (int azimuth = -180; azimuth <= 180; azimuth += 10) {
+    for (int elevation = -90; elevation <= 90; elevation += 10) {
       const double a = azimuth * degree_rad, e = elevation * degree_rad;
       const Vec3 torque = sphere_table_torque_N_m(
           {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)});

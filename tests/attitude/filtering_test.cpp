@@ -61,14 +61,14 @@ TEST(GyroDrivenFilter, ReachesFarrenkopfsSteadyState) {
   FilterSettings settings;
   settings.motion = Motion::gyro_drives;
   settings.rate_sigma_rad_s = 1e-2;
-  const Readings readings = at_rest(interval_s, 30001, 100, true);
+  const Readings readings = at_rest(interval_s, 12001, 100, true);
   const MotionModel model(free_body(), sensors, settings, {});
   EstimationOptions options;
   options.smooths = false;
   const Estimation e = estimate_attitude(model, readings, options);
   for (int axis = 0; axis < 3; ++axis) {
-    const double after = std::sqrt(e.filtered[30000].covariance(axis, axis));
-    const double before = std::sqrt(e.filtered[29999].covariance(axis, axis));
+    const double after = std::sqrt(e.filtered[12000].covariance(axis, axis));
+    const double before = std::sqrt(e.filtered[11999].covariance(axis, axis));
     // Each reading of the gyro represents an interval of a hundredth of the time between attitudes.
     EXPECT_NEAR(after / (n * std::sqrt(1.0 - 1.0 / (zeta * zeta))), 1.0, 5e-3);
     EXPECT_NEAR(before / (n * std::sqrt(zeta * zeta - 1.0)), 1.0, 1e-2);
@@ -220,15 +220,15 @@ EstimateStudy study_of(const PropagationRun& run, int runs) {
   return study;
 }
 
-// The mean of e P⁻¹ e over 200 runs is 6 ± √(12/200). The tested rows must be within four standard
+// The mean of e P⁻¹ e over 100 runs is 6 ± √(12/100). The tested rows must be within four standard
 // errors and most rows within the 95 % band. The same holds for the innovations.
-TEST(Consistency, OfTheFilterOver200Runs) {
+TEST(Consistency, OfTheFilterOver100Runs) {
   const PropagationRun run = drawn_run();
-  const EstimateStudy study = study_of(run, 200);
+  const EstimateStudy study = study_of(run, 100);
   const ConsistencyResult result = consistency_of(study, run, study.filter);
   const std::vector<double> filtered = result.ensemble.nees_filtered();
   const std::vector<double> smoothed = result.ensemble.nees_smoothed();
-  const double error = std::sqrt(12.0 / 200.0);
+  const double error = std::sqrt(12.0 / 100.0);
   for (size_t row = 8; row < filtered.size(); row += 8) {
     EXPECT_NEAR(filtered[row], 6.0, 4.0 * error) << row;
     EXPECT_NEAR(smoothed[row], 6.0, 4.0 * error) << row;
@@ -244,7 +244,7 @@ TEST(Consistency, OfTheFilterOver200Runs) {
 // A deliberately wrong filter, which assumes 25 % less noise than the sensors have.
 TEST(Consistency, IsLostWithTheWrongNoise) {
   const PropagationRun run = drawn_run();
-  EstimateStudy study = study_of(run, 60);
+  EstimateStudy study = study_of(run, 25);
   study.nominal.sensors.camera->noise_rad *= 0.75;
   study.nominal.sensors.gyro->noise_rad_s *= 0.75;
   const ConsistencyResult result = consistency_of(study, run, study.filter);
@@ -338,6 +338,7 @@ TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
   run.sensors = instruments(1e-4, 2e-4, 0.0);
   run.initial = Dynamics(run.model).initial_state({0.3, -0.2, 0.0});
   run.duration_s = 30.0;
+  run.output_rate_Hz = 4.0;
   const SimulatedRun simulated = simulate_run(run, 21);
   const EstimateStudy study = study_of(run, 0);
   const Readings readings = readings_of(simulated.recording, "run", run.model.platform, 0.0);

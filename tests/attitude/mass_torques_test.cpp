@@ -137,11 +137,11 @@ TEST(FloorVibration, PlaysSpectraAndRecordings) {
            "spectrum = {frequency_Hz = [1, 10], density_m2_s3 = [1e-8, 1e-8], tones = 200}");
   // Torque about x: m · 1e-5 · a_y, whose mean square is 9e-8 by the area of the spectrum.
   double sum = 0;
-  constexpr int samples = 4000;
+  constexpr int samples = 1000;
   for (int i = 0; i < samples; ++i) {
     sum += std::pow(torque_body_N_m(noisy, Quat::Identity(), Vec3::Zero(), 0.37 * i).x(), 2);
   }
-  EXPECT_NEAR(sum / samples / (std::pow(7.0 * 1e-5, 2) * 9e-8), 1.0, 0.06);
+  EXPECT_NEAR(sum / samples / (std::pow(7.0 * 1e-5, 2) * 9e-8), 1.0, 0.1);
 
   const auto path = test_file("floor.csv",
                               "t_s,acceleration_x_m_s2,acceleration_y_m_s2,acceleration_z_m_s2\n"
