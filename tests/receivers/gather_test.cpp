@@ -154,20 +154,6 @@ TEST(Gather, SunOnAPlateIsCosineOfItsAngle) {
   }
 }
 
-TEST(Gather, SameBitsAtAnyNumberOfThreads) {
-  const TraceableScene scene(shaded_square());
-  const FluxMapReceiver map = map_of(scene.scene(), 40);
-  const Beam beam = pillbox_disc("angle");
-  std::vector<std::vector<double>> runs;
-  for (const int threads : {1, 2, 7}) {
-    GatherOptions options;
-    options.threads = threads;
-    runs.push_back(gather_direct(scene, {}, std::span(&beam, 1), map, options).direct.sums);
-  }
-  EXPECT_EQ(runs[0], runs[1]);
-  EXPECT_EQ(runs[0], runs[2]);
-}
-
 TEST(Gather, GoesOnUntilTheErrorIsReached) {
   const TraceableScene scene(shaded_square());
   const FluxMapReceiver map = map_of(scene.scene(), 20);

@@ -119,18 +119,5 @@ TEST(GatherTorque, AgreesWithRaysBinByBin) {
   EXPECT_NEAR(squares / compared, 1.15, 0.3);
 }
 
-TEST(GatherTorque, SameBitsAtAnyNumberOfThreads) {
-  const TraceableScene scene(fixtures::shaded_square());
-  const TorqueMapReceiver map = torque_map_of(scene.scene(), 10, Vec3::Zero());
-  const Beam beam = fixtures::pillbox_disc("angle");
-  std::vector<std::vector<double>> runs;
-  for (const int threads : {1, 3}) {
-    GatherOptions options;
-    options.threads = threads;
-    runs.push_back(gather_torque(scene, {}, std::span(&beam, 1), map, options).direct.sums);
-  }
-  EXPECT_EQ(runs[0], runs[1]);
-}
-
 }  // namespace
 }  // namespace photorque

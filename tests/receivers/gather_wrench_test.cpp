@@ -166,17 +166,5 @@ TEST(GatherWrench, AgreesWithRays) {
   }
 }
 
-TEST(GatherWrench, SameBitsAtAnyNumberOfThreads) {
-  const TraceableScene scene(fixtures::shaded_square());
-  const WrenchReceiver body = body_of(scene.scene());
-  const Beam beam = fixtures::gaussian_led(0.4, 3.0, {0, 0, 1.5}, {0, 0, -1});
-  const auto gather = WrenchGather::make(scene, std::span(&beam, 1));
-  std::vector<std::vector<double>> runs;
-  for (const int threads : {1, 3}) {
-    runs.push_back(gather->wrench({}, body, {.threads = threads}).direct.sums);
-  }
-  EXPECT_EQ(runs[0], runs[1]);
-}
-
 }  // namespace
 }  // namespace photorque
