@@ -286,12 +286,6 @@ class Trace(PageTest):
         self.browser.key("Home")
         self.assertEqual(before, self.stage())
 
-    def test_equal_runs_give_equal_pages_at_any_number_of_threads(self):
-        again = self.folder / "again"
-        run("trace", NOMINAL, "--set", "attitude.tilt_deg=20", "--set", "trace.rays=400000", "--page", "--out", again,
-            "--quiet", "--threads", "1")
-        self.assertEqual(self.page.read_bytes(), (again / "page.html").read_bytes())
-
 
 class TorqueMap(PageTest):
     def test_slider_moves_the_platform_and_reads_the_table(self):

@@ -46,7 +46,7 @@ TEST_F(TrackingCommands, ThePlatformHidesItsMarkers) {
 
 TEST_F(TrackingCommands, EstimatesAreRecordingsThatOthersRead) {
   const std::string brief =
-      " --set propagate.duration_s=60 --set propagate.output_rate_Hz=5 --set estimate.runs=2 ";
+      " --set propagate.duration_s=30 --set propagate.output_rate_Hz=5 --set estimate.runs=2 ";
   const Outcome simulated = succeed("estimate " + tracked + brief + "--out " + at("s"));
   EXPECT_THAT(simulated.out, HasSubstr("95 % band"));
   succeed("propagate " + tracked + brief + "--out " + at("p"));
