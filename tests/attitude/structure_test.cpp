@@ -78,28 +78,10 @@ TEST(Battery, LithiumFollowsFaraday) {
   EXPECT_NEAR(lithium_as_published_kg_C * 3600 * 1e3, 0.3, 1e-12);
 }
 
-// Eq. 33 and 34: VARTA EasyPack XL, 2400 mAh, on a platform of 7 kg; and its torque.
-TEST(Battery, ReproducesThePaper) {
-  const BatteryCell cell{.electrodes_body_m = {0.03225, 0, 0}};
-  const Vec3 shift_m = com_shift_m_C({&cell, 1}, 7.0, lithium_as_published_kg_C) * 2.4 * 3600;
-  EXPECT_NEAR(shift_m.x(), 3.32e-6, 0.005e-6);
-  EXPECT_NEAR(7.0 * g * shift_m.norm(), 2.3e-4, 0.05e-4);
-  const Vec3 exact_m = com_shift_m_C({&cell, 1}, 7.0) * 2.4 * 3600;
-  EXPECT_NEAR(exact_m.x() / shift_m.x(), 0.2589 / 0.3, 2e-4);
-}
-
 TEST(Battery, OpposedCellsCancel) {
   const std::vector<BatteryCell> cells = {{{0.1, 0, 0}, {0.03, 0, 0}, 0.5},
                                           {{-0.1, 0, 0}, {-0.03, 0, 0}, 0.5}};
   EXPECT_EQ(com_shift_m_C(cells, 7.0).norm(), 0.0);
-}
-
-// Section III.B: 25 W over 24 h are 600 Wh. The printed 360 Wh correspond to 15 W.
-TEST(Battery, DayAtNominalPowerTakes600WattHours) {
-  const LoadPhase nominal{86400, 25.0}, printed{86400, 15.0};
-  EXPECT_DOUBLE_EQ(energy_J({&nominal, 1}) / 3600, 600.0);
-  EXPECT_DOUBLE_EQ(energy_J({&printed, 1}) / 3600, 360.0);
-  EXPECT_DOUBLE_EQ(battery_mass_kg(600 * 3600.0, 150 * 3600.0), 4.0);
 }
 
 // Usual parts, 1.8 deg, 2 mm and 0.25 kg on 7 kg, which give the paper's printed results.

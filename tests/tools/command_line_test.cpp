@@ -40,17 +40,6 @@ TEST_F(CommandLine, EveryExperimentIsRendered) {
   }
 }
 
-TEST_F(CommandLine, TorqueMapCoversTheGrid) {
-  succeed("torque-map " + nominal_file +
-          " --set trace.rays=16384 --set torque_map.tilt_deg=[0,30]"
-          " --set torque_map.heading_deg=[0,180] --out " +
-          at("o"));
-  const std::string table = file_text(folder_ / "o" / "power_over_attitude.csv");
-  EXPECT_EQ(
-      std::count(table.begin(), table.end(), '\n') - std::count(table.begin(), table.end(), '#'), 5)
-      << table;
-}
-
 // The Sun at azimuth 30, elevation 20 deg of the body is a source that shines from there on the
 // body at rest.
 TEST_F(CommandLine, TorqueMapTurnsTheBodyUnderTheSun) {
@@ -73,17 +62,6 @@ TEST_F(CommandLine, TorqueMapTurnsTheBodyUnderTheSun) {
     EXPECT_GT(sigma, 0.0);
     EXPECT_NEAR(turned[i], moved[i], 4.0 * sigma) << i;
   }
-}
-
-TEST_F(CommandLine, TorqueMapOverTheSphereWritesSpad) {
-  const std::string craft = (shipped_scenes / "spacecraft" / "spacecraft.toml").string();
-  succeed("torque-map " + craft +
-          " --set torque_map.azimuth_step_deg=90"
-          " --set torque_map.elevation_step_deg=45 --set torque_map.rays=8192 --out " +
-          at("o"));
-  const std::string spad = file_text(folder_ / "o" / "spacecraft.spo");
-  EXPECT_THAT(spad, HasSubstr("Azimuth"));
-  EXPECT_EQ(last_row(folder_ / "o" / "wrench_table_body.csv").size(), 14u);
 }
 
 double value_in(const std::string& summary, const std::string& key, const char* field) {
