@@ -10,12 +10,12 @@
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/numerics/linear.h"
 #include "core/text/format.h"
 #include "diagnosis/guess/file_head.h"
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/guess/header.h"
 #include "diagnosis/guess/places.h"
+#include "diagnosis/guess/rates.h"
 
 namespace photorque {
 namespace {
@@ -270,57 +270,6 @@ void infer_one_axis(Machine& m) {
   const RestoringLaw law = law_of_swing(m.runs, Vec3::UnitZ());
   m.why = restoring_law_text(law, "one angle that swings about its mean");
   if (law != RestoringLaw::spring) m.observe_as(Topology::one_axis, Vec3::UnitX());
-}
-
-// Whether the rates have no mean, as those of a swing. A free body rotates in one sense about one
-// of its principal axes (Poinsot).
-bool has_no_mean_rate(const std::vector<Observation>& runs) {
-  constexpr double none = 0.15;  // of the rms; tumbling bodies have 0.4 and more
-  Vec3 sum = Vec3::Zero();
-  double squares = 0.0, count = 0.0;
-  for (const Observation& seen : runs) {
-    for (const Vec3& rate : seen.gyro_rad_s) {
-      if (!rate.allFinite()) continue;
-      sum += rate;
-      squares += rate.squaredNorm();
-      ++count;
-    }
-  }
-  return sum.squaredNorm() < none * none * squares * count;
-}
-
-// The body axis that is nearest to the line along which nearly all of the rate lies. `across`: the
-// largest rate across this line, as a fraction of that along it. Returns nothing if there is no
-// such line.
-std::optional<int> axis_of_swing(const std::vector<Observation>& runs, double across) {
-  Mat3 squares = Mat3::Zero();
-  for (const Observation& seen : runs) {
-    for (const Vec3& rate : seen.gyro_rad_s) {
-      if (rate.allFinite()) squares += rate * rate.transpose();
-    }
-  }
-  const SymmetricEigen principal = symmetric_eigen(squares);
-  if (!(principal.values.head(2).sum() < across * across * principal.values[2])) {
-    return std::nullopt;
-  }
-  Eigen::Index largest = 0;
-  principal.vectors.col(2).cwiseAbs().maxCoeff(&largest);
-  return static_cast<int>(largest);
-}
-
-// The axis with nearly all of the rate; none if several have significant rates.
-std::optional<int> only_axis(const std::vector<Observation>& runs) {
-  Vec3 squares = Vec3::Zero();
-  for (const Observation& seen : runs) {
-    for (size_t i = 0; i < seen.blocks(); ++i) {
-      if (seen.gyro_rad_s[i].allFinite()) squares += seen.gyro_rad_s[i].cwiseAbs2();
-    }
-  }
-  int axis = 0;
-  const double most = squares.maxCoeff(&axis);
-  constexpr double across = 0.05;  // fraction of the rate: a slightly misaligned gyro
-  if (squares.sum() - most > across * across * most) return std::nullopt;
-  return axis;
 }
 
 // An angle relative to the vertical, or the magnitude of a rate, belongs to a body that turns about

@@ -286,26 +286,6 @@ void print_left_out(const Console& console, const FitTask& task,
                (outliers.size() > shown ? ", …" : ""));
 }
 
-std::vector<ArrayPoint> cell_points(const CellCurve& cell, double light_A) {
-  constexpr int steps = 200;
-  std::vector<ArrayPoint> points;
-  const double open_V = cell.open_circuit_V(light_A);
-  for (int k = 0; k <= steps; ++k) {
-    const double v = open_V * k / steps;
-    points.push_back({v, cell.current_A(light_A, v)});
-  }
-  return points;
-}
-
-ArrayPoint best_point(const CellCurve& cell, double light_A) {
-  const CellOperatingPoint best = cell.maximum_power(light_A);
-  return {best.voltage_V, best.current_A};
-}
-
-void add_cell_plot(const FitTask& task, const CellCurve& cell, double light_A, Product& product) {
-  add_fit_plot(task, cell_points(cell, light_A), {best_point(cell, light_A)}, product);
-}
-
 void print_light_note(const Console& console, bool uses_light, bool is_one) {
   if (!uses_light) return;
   console.line(

@@ -182,4 +182,28 @@ void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
   product.plots.push_back(plot);
 }
 
+namespace {
+
+std::vector<ArrayPoint> cell_points(const CellCurve& cell, double light_A) {
+  constexpr int steps = 200;
+  std::vector<ArrayPoint> points;
+  const double open_V = cell.open_circuit_V(light_A);
+  for (int k = 0; k <= steps; ++k) {
+    const double v = open_V * k / steps;
+    points.push_back({v, cell.current_A(light_A, v)});
+  }
+  return points;
+}
+
+}  // namespace
+
+ArrayPoint best_point(const CellCurve& cell, double light_A) {
+  const CellOperatingPoint best = cell.maximum_power(light_A);
+  return {best.voltage_V, best.current_A};
+}
+
+void add_cell_plot(const FitTask& task, const CellCurve& cell, double light_A, Product& product) {
+  add_fit_plot(task, cell_points(cell, light_A), {best_point(cell, light_A)}, product);
+}
+
 }  // namespace photorque

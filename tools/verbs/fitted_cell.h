@@ -67,5 +67,9 @@ void print_cell(const Console& console, const SingleDiode& diode, const FitTask&
 // Adds measured points and a fitted curve, as current and as power.
 void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
                   const std::vector<ArrayPoint>& maxima, Product& product);
+// The maximum power point of a cell with this photocurrent.
+ArrayPoint best_point(const CellCurve& cell, double light_A);
+// Adds measured points and the curve of a cell with this photocurrent.
+void add_cell_plot(const FitTask& task, const CellCurve& cell, double light_A, Product& product);
 
 }  // namespace photorque
