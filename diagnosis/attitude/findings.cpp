@@ -201,21 +201,25 @@ std::vector<FittedParameter> initial_states(const Trial& t, size_t disturbance) 
   return result;
 }
 
-// The explanation of an effect. About a single axis, unbalance is stated as the frequency of the
-// pendulum that it makes, √(m g r / I) / 2π with g and r perpendicular to the axis.
+// The explanation of an effect. For a torque that restores an angle it states the natural
+// frequency, √(k / I) / 2π with the steepest fall k of the torque, because an offset or a stiffness
+// of a body of unknown inertia says little.
 std::string explanation_of(const Candidate& c, const Trial& chosen, size_t disturbance) {
-  const AttitudeModel& model = chosen.fit.best.model;
-  if (c.effect.kind != "static_unbalance" || model.platform.topology != Topology::one_axis) {
-    return c.effect.explanation;
-  }
+  AttitudeModel model = chosen.fit.best.model;
+  if (model.platform.slides() || !is_restoring(c, model)) return c.effect.explanation;
   const Vec3& axis = model.platform.axis;
-  const Parameters& offset = model.disturbances[disturbance].parameters;
-  const Vec3 r_m(offset[0].value, offset[1].value, offset[2].value);
-  const double stiffness_N_m = model.platform.mass_kg *
-                               axis.cross(model.environment.gravity_lab_m_s2).norm() *
-                               axis.cross(r_m).norm();
   const double inertia_kg_m2 = axis.dot(model.platform.inertia_kg_m2 * axis);
-  return "the centre of mass is beside the axis, as in a pendulum that swings at " +
+  model.disturbances = {model.disturbances[disturbance]};
+  constexpr int steps = 720;
+  double stiffness_N_m = 0.0, before_N_m = 0.0;
+  for (int k = 0; k <= steps; ++k) {
+    PlatformState state = Dynamics(model).initial_state();
+    state.lab_from_body = Quat(Eigen::AngleAxisd(2.0 * pi * k / steps - pi, axis));
+    const double now_N_m = axis.dot(disturbance_torques_body_N_m(model, state).front());
+    if (k > 0) stiffness_N_m = std::max(stiffness_N_m, (before_N_m - now_N_m) * steps / (2.0 * pi));
+    before_N_m = now_N_m;
+  }
+  return c.effect.explanation + ": alone, it swings at " +
          readable_number(std::sqrt(stiffness_N_m / inertia_kg_m2) / (2.0 * pi), 3) + " Hz";
 }
 

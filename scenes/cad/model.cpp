@@ -87,7 +87,7 @@ GltfModel read_cad_bytes(const std::string& bytes, const std::string& file, CadF
   for (cad::Part& part : parts) {
     part.name = clean_text(part.name);
     part.material = clean_text(part.material);
-    // STL has no materials: a solid may have that of its own name.
+    // STL has no materials: a solid may have the one with its name.
     if (format == CadFormat::stl && described.contains(part.name)) part.material = part.name;
     materials.insert(part.material);
   }
