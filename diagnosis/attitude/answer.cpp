@@ -283,6 +283,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
   if (!is_better_at_readings(described.chosen().fit, nominal_fit, data, limits)) {
     described.decision.chosen = 0;
     described.trials.front().fit = nominal_fit;
+    described.rest_is_noise = false;
   }
   return described;
 }
