@@ -200,15 +200,18 @@ bool is_watched(const NominalModel& nominal, const RecordedData& data) {
 // data much worse.
 bool is_better_at_readings(const Fit& named, const Fit& nominal, const RecordedData& data,
                            const Thresholds& limits) {
-  const auto chi2 = [&](const Fit& fit, const std::vector<Observation>& runs) {
-    const double found = propagate_model(fit, runs, limits).chi2;
-    return std::isfinite(found) ? found : inference::infinity;
+  const auto is_lower = [](double one, double other) {
+    return std::isfinite(one) && !(one >= other);
   };
-  if (!(chi2(named, data.train) < chi2(nominal, data.train))) return false;
+  if (!is_lower(propagate_model(named, data.train, limits).chi2,
+                propagate_model(nominal, data.train, limits).chi2)) {
+    return false;
+  }
   if (data.held.empty()) return true;
-  const auto samples = static_cast<double>(propagate_model(nominal, data.held, limits).samples);
-  return chi2(named, data.held) <=
-         limits.decision.max_held_out_growth * std::max(samples, chi2(nominal, data.held));
+  const Fit held = propagate_model(nominal, data.held, limits);
+  const double most = std::max(held.chi2, static_cast<double>(held.samples));  // NaN stays
+  return is_lower(propagate_model(named, data.held, limits).chi2,
+                  limits.decision.max_held_out_growth * most);
 }
 
 // Whether the body turns about one axis or slides. A body that turns about three axes has so many
