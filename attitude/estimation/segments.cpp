@@ -384,7 +384,7 @@ std::vector<Break> breaks_of(const AxisReadings& read, size_t window) {
 ConsistentSegment consistent_segment(const Observation& rows, const Vec3& axis, size_t first,
                                      size_t last) {
   ConsistentSegment whole = {first, last, ""};
-  if (is_commanded(rows.schedule)) return whole;
+  if (is_commanded(rows.schedule) || !angles_over_weight(rows, axis).row.empty()) return whole;
   const AxisReadings read = smoothed_rates(rows, axis, first, last);
   std::vector<Break> breaks;
   // A long window detects a weak torque. The shortest window that detects a break locates it best.

@@ -48,7 +48,8 @@ struct ConsistentSegment {
 // straight lines through the rates on both sides, over at least 12 rows. Their slopes must differ
 // by half of the larger slope, by ten standard errors and by eight times the median difference in
 // the recording. Rates near zero or with a change of sign are not tested, because dry friction
-// causes breaks there. All rows are returned if commands or measured wheels act.
+// causes breaks there. All rows are returned if commands or measured wheels act, or if a weight
+// exerts a torque once per turn.
 ConsistentSegment consistent_segment(const Observation& rows, const Vec3& axis, size_t first,
                                      size_t last);
 

@@ -243,6 +243,60 @@ AxisReadings angles_of_swing(const Observation& rows, const Vec3& axis) {
   return read;
 }
 
+namespace {
+
+// Whether a torque that changes once per turn explains most of what a constant torque and friction
+// do not: it halves the sum of squares of the rates.
+bool shows_weight(const AxisReadings& rates, const std::vector<double>& turned_rad) {
+  constexpr double clearly = 0.5, alike = 1e-6;
+  const auto count = static_cast<Eigen::Index>(rates.row.size());
+  Eigen::MatrixXd motion(count, 2), of_angle(count, 3);
+  motion << Eigen::Map<const Eigen::VectorXd>(turned_rad.data(), count),
+      Eigen::Map<const Eigen::VectorXd>(rates.value.data(), count);
+  of_angle << Eigen::VectorXd::Ones(count), motion.col(0).array().sin().matrix(),
+      motion.col(0).array().cos().matrix();
+  const auto left = [&](Eigen::Index of_angle_used) {
+    const Eigen::MatrixXd torques = with_friction(motion, of_angle.leftCols(of_angle_used));
+    Eigen::MatrixXd law(count, torques.cols() + 1);
+    law.col(0).setOnes();
+    for (Eigen::Index k = 0; k < torques.cols(); ++k) {
+      const std::vector<double> torque(torques.col(k).begin(), torques.col(k).end()),
+          sum = integral(rates.time_s, torque);
+      law.col(k + 1) = Eigen::Map<const Eigen::VectorXd>(sum.data(), count);
+    }
+    law.colwise().normalize();
+    const Eigen::VectorXd rate = motion.col(1);
+    return (rate - law * least_squares(law, rate, alike).solution).squaredNorm();
+  };
+  return left(3) < clearly * left(1);
+}
+
+}  // namespace
+
+AxisReadings angles_over_weight(const Observation& rows, const Vec3& axis) {
+  constexpr size_t fewest_readings = 40, reach = 4;
+  const bool sees_angle = rows.has_some_attitude();
+  AxisReadings rates = sees_angle ? angles_about(rows, axis, 0, rows.blocks())
+                                  : rates_about(rows, axis, 0, rows.blocks());
+  if (rates.row.size() < fewest_readings) return {};
+  AxisReadings angles = rates;
+  if (sees_angle) {
+    for (size_t i = 0; i < rates.row.size(); ++i) {
+      const size_t first = i - std::min(i, reach), last = std::min(rates.row.size(), i + reach + 1);
+      rates.value[i] = fitted_cubic(angles, first, last, rates.time_s[i], 1.0, angles.value[i])[1];
+    }
+  } else {
+    angles.value = integral(rates.time_s, rates.value);
+  }
+  const auto [least, most] = std::ranges::minmax(angles.value);
+  return most - least > pi && shows_weight(rates, angles.value) ? angles : AxisReadings();
+}
+
+AxisReadings angles_from_rates(const Observation& rows, const Vec3& axis) {
+  AxisReadings swing = angles_of_swing(rows, axis);
+  return swing.row.empty() ? angles_over_weight(rows, axis) : swing;
+}
+
 bool swings(const std::vector<Observation>& runs, const Vec3& axis) {
   constexpr double beyond = 0.2;
   constexpr int fewest = 3;

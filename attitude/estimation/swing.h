@@ -39,6 +39,16 @@ size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size
 // intervals between differ by a factor of two.
 AxisReadings angles_of_swing(const Observation& rows, const Vec3& axis);
 
+// Angles of a body that turns by at least half a turn over a weight. If only rates were measured,
+// the angles are their integral, zero at the start. Empty unless the readings show a torque that
+// changes once per turn, as a weight exerts it about a level axis. The rates are fitted with time
+// integrals of a constant, dry, viscous and quadratic friction, and then also of sine and cosine of
+// the angle. The second fit must halve the sum of squares.
+AxisReadings angles_over_weight(const Observation& rows, const Vec3& axis);
+
+// Angles of which only rates were measured: angles_of_swing(), otherwise angles_over_weight().
+AxisReadings angles_from_rates(const Observation& rows, const Vec3& axis);
+
 // Whether the angle about `axis` repeatedly passes its mean, by at least a fifth of its largest
 // deviation on both sides. For runs without an angle: whether angles_of_swing() finds a swing.
 bool swings(const std::vector<Observation>& runs, const Vec3& axis);

@@ -175,7 +175,7 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
                          turns_less(data.train, platform.axis, most_turns_of_line);
   const bool may_swing =
       turns_alone && std::ranges::any_of(data.train, [&](const Observation& seen) {
-        return !angles_of_swing(seen, platform.axis).row.empty();
+        return !angles_from_rates(seen, platform.axis).row.empty();
       });
   nominal.model.holds_attitude =
       !is_seen && !may_twist && !may_swing && !depends_on_attitude(stated.model);

@@ -5,6 +5,7 @@
 
 #include "attitude/estimation/axis_readings.h"
 #include "attitude/estimation/swing.h"
+#include "core/constants.h"
 #include "core/numerics/linear.h"
 
 namespace photorque {
@@ -13,6 +14,7 @@ namespace {
 // Angle and rate at some instants of a run.
 struct Curve {
   std::vector<double> time_s, angle_rad, rate_rad_s;
+  bool hides_zero = false;  // the angle is an integral with an unknown value at the start
 };
 
 // Value and slope at one reading of a cubic fitted to `reach` readings on each side.
@@ -36,8 +38,23 @@ size_t reach_of(const AxisReadings& read, double middle) {
   return std::max(least, read.value.size() / parts / 2);
 }
 
+constexpr size_t most_instants = 4000;
+
+// The readings of a body that turns over a weight. Local cubics would smooth its torque.
+Curve turning_curve(const AxisReadings& rates, const AxisReadings& angles) {
+  Curve curve;
+  curve.hides_zero = true;
+  const size_t stride = std::max<size_t>(1, rates.row.size() / most_instants);
+  for (size_t i = 0; i < rates.row.size(); i += stride) {
+    curve.time_s.push_back(rates.time_s[i]);
+    curve.angle_rad.push_back(angles.value[i]);
+    curve.rate_rad_s.push_back(rates.value[i]);
+  }
+  return curve;
+}
+
 Curve curve_of(const Observation& seen, const Vec3& axis) {
-  constexpr size_t fewest = 20, most_instants = 4000;
+  constexpr size_t fewest = 20;
   const bool sees_angle = seen.has_some_attitude();
   const AxisReadings read = sees_angle ? angles_about(seen, axis, 0, seen.blocks())
                                        : rates_about(seen, axis, 0, seen.blocks());
@@ -50,6 +67,10 @@ Curve curve_of(const Observation& seen, const Vec3& axis) {
   const size_t reach = reach_of(read, middle),
                stride = std::max<size_t>(1, read.row.size() / most_instants);
   const AxisReadings swing = sees_angle ? AxisReadings() : angles_of_swing(seen, axis);
+  if (!sees_angle && swing.row.empty()) {
+    const AxisReadings turning = angles_over_weight(seen, axis);
+    if (!turning.row.empty()) return turning_curve(read, turning);
+  }
   double angle_rad = 0.0;
   for (size_t i = 0; i < read.row.size(); ++i) {
     if (!swing.value.empty()) {
@@ -102,8 +123,8 @@ struct Strength {
 };
 
 // Fits the used strengths and one initial rate per run to the rates that the stated laws do not
-// explain.
-void solve(const std::vector<Eigen::VectorXd>& rates, std::vector<Strength>& strengths) {
+// explain. Returns the residual sum of squares.
+double solve(const std::vector<Eigen::VectorXd>& rates, std::vector<Strength>& strengths) {
   constexpr double alike = 1e-5;
   Eigen::Index rows = 0, columns = static_cast<Eigen::Index>(rates.size());
   for (const Eigen::VectorXd& run : rates) rows += run.size();
@@ -129,6 +150,7 @@ void solve(const std::vector<Eigen::VectorXd>& rates, std::vector<Strength>& str
     s.value = s.is_used ? found[column] / scale[column] : 0.0;
     column += s.is_used ? 1 : 0;
   }
+  return (right - law * scale.cwiseInverse().asDiagonal() * found).squaredNorm();
 }
 
 // The strengths of the candidates' laws, with the rates that they cause along the curves.
@@ -149,6 +171,75 @@ std::vector<Strength> strengths_along(const std::vector<Curve>& curves, const At
   return strengths;
 }
 
+// Strengths of laws within their physical bounds, and the residual sum of squares of the rates.
+struct Solution {
+  std::vector<Strength> strengths;
+  double left = 0.0;
+};
+
+Solution solution_along(const std::vector<Curve>& curves, const AttitudeModel& stated,
+                        const Candidates& all, const std::vector<size_t>& candidates) {
+  std::vector<Eigen::VectorXd> rates;
+  for (const Curve& curve : curves) {
+    const Eigen::Map<const Eigen::VectorXd> rate(curve.rate_rad_s.data(),
+                                                 static_cast<Eigen::Index>(curve.time_s.size()));
+    rates.emplace_back(rate - impulse_of(stated, curve));
+  }
+  Solution result{strengths_along(curves, stated, all, candidates)};
+  const auto beyond = [&](const Strength& s) {
+    const double value = s.value * all[s.law].scale[s.parameter];
+    const bool is_beyond = value < all[s.law].lowest[s.parameter] ||
+                           value > all[s.law].highest[s.parameter] ||
+                           (value < 0.0 && braking_power(all[s.law], stated));
+    return is_beyond ? std::abs(s.value) : 0.0;
+  };
+  for (;;) {
+    result.left = solve(rates, result.strengths);
+    const auto worst = std::ranges::max_element(result.strengths, {}, beyond);
+    if (worst == result.strengths.end() || !(beyond(*worst) > 0.0)) return result;
+    worst->is_used = false;
+  }
+}
+
+// Whether the laws drive the body back to a zero angle.
+bool hangs_at_zero(const Solution& solution, const AttitudeModel& stated, const Candidates& all) {
+  constexpr double off_rad = pi / 3.0;
+  const Curve aside{{0.0, 0.0}, {off_rad, -off_rad}, {0.0, 0.0}};
+  double torque_N_m = 0.0;  // at +off_rad minus at −off_rad
+  for (const Strength& s : solution.strengths) {
+    AttitudeModel model = stated;
+    model.disturbances = {all[s.law].with_strength_alone(s.parameter)};
+    for (const size_t i : {0U, 1U}) {
+      const Vec3 torque = disturbance_torques_body_N_m(model, state_at(model, aside, i)).front();
+      torque_N_m += (i == 0 ? s.value : -s.value) * model.platform.axis.dot(torque);
+    }
+  }
+  return torque_N_m < 0.0;
+}
+
+// Turns the curve `which`, whose zero of the angle is unknown, to the zero that leaves the smallest
+// residual. Of two zeros half a turn apart it is the one to which the laws drive the body.
+void find_zero(size_t which, const AttitudeModel& stated, const Candidates& all,
+               const std::vector<size_t>& candidates, std::vector<Curve>& curves) {
+  constexpr int steps = 12;  // of half a turn
+  const std::vector<double> turned_rad = curves[which].angle_rad;
+  const auto turn_to = [&](double zero_rad) {
+    for (size_t i = 0; i < turned_rad.size(); ++i) {
+      curves[which].angle_rad[i] = turned_rad[i] + zero_rad;
+    }
+  };
+  double least = inference::infinity, best_rad = 0.0;
+  for (int step = 0; step < steps; ++step) {
+    const double zero_rad = pi * step / steps;
+    turn_to(zero_rad);
+    const Solution solution = solution_along(curves, stated, all, candidates);
+    if (!(solution.left < least)) continue;
+    least = solution.left;
+    best_rad = hangs_at_zero(solution, stated, all) ? zero_rad : zero_rad + pi;
+  }
+  turn_to(best_rad);
+}
+
 }  // namespace
 
 Trial as_stated(Trial nominal) {
@@ -164,33 +255,18 @@ LawsOfCurve laws_of_curve(const Trial& nominal, const Candidates& all,
   const AttitudeModel stated = as_stated(nominal).fit.best.model;
   LawsOfCurve result;
   std::vector<Curve> curves;
-  std::vector<Eigen::VectorXd> rates;
   result.starts = starts_from_data(nominal.fit.best, runs);
+  for (const Observation& seen : runs) {
+    curves.push_back(curve_of(seen, stated.platform.axis));
+    if (curves.back().time_s.empty()) return {};
+  }
   for (size_t run = 0; run < runs.size(); ++run) {
-    Curve curve = curve_of(runs[run], stated.platform.axis);
-    if (curve.time_s.empty()) return {};
-    const Eigen::Map<const Eigen::VectorXd> rate(curve.rate_rad_s.data(),
-                                                 static_cast<Eigen::Index>(curve.time_s.size()));
-    rates.emplace_back(rate - impulse_of(stated, curve));
+    if (curves[run].hides_zero) find_zero(run, stated, all, candidates, curves);
     PlatformState& initial = result.starts[run].initial;
-    initial.rate_body_rad_s = curve.rate_rad_s.front() * stated.platform.axis;
-    initial.lab_from_body = Eigen::AngleAxisd(curve.angle_rad.front(), stated.platform.axis);
-    curves.push_back(std::move(curve));
+    initial.rate_body_rad_s = curves[run].rate_rad_s.front() * stated.platform.axis;
+    initial.lab_from_body = Eigen::AngleAxisd(curves[run].angle_rad.front(), stated.platform.axis);
   }
-  std::vector<Strength> strengths = strengths_along(curves, stated, all, candidates);
-  for (;;) {
-    solve(rates, strengths);
-    const auto beyond = [&](const Strength& s) {
-      const double value = s.value * all[s.law].scale[s.parameter];
-      const bool is_beyond = value < all[s.law].lowest[s.parameter] ||
-                             value > all[s.law].highest[s.parameter] ||
-                             (value < 0.0 && braking_power(all[s.law], stated));
-      return is_beyond ? std::abs(s.value) : 0.0;
-    };
-    const auto worst = std::ranges::max_element(strengths, {}, beyond);
-    if (worst == strengths.end() || !(beyond(*worst) > 0.0)) break;
-    worst->is_used = false;
-  }
+  const std::vector<Strength> strengths = solution_along(curves, stated, all, candidates).strengths;
   for (const size_t c : candidates) {
     Start start{all[c].start};
     bool acts = false;

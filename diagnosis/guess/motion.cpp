@@ -228,16 +228,28 @@ RestoringLaw law_of_swing(const std::vector<Observation>& runs, const Vec3& axis
   return law;
 }
 
-// Detects a swing in the rates about body axis `k` and sets the axis of the platform. A weight acts
-// about a level axis. For a spring the upright axis is assumed. If that is not axis `k`, the rates
-// about `k` are taken as those about the platform's axis. Returns whether there is a swing.
-bool infer_oscillation_from_rates(Machine& m, int k, const std::string& seen) {
+// Whether the body turns over a weight about `axis` in a run.
+bool turns_over_weight(const std::vector<Observation>& runs, const Vec3& axis) {
+  return std::ranges::any_of(
+      runs, [&](const Observation& run) { return !angles_over_weight(run, axis).row.empty(); });
+}
+
+constexpr const char* over_weight =
+    " that shows a torque once per turn: an unbalance about a level axis (\"z\" where the axis is "
+    "vertical).";
+
+// Detects a swing, or a turning over a weight, in the rates about body axis `k` and sets the axis
+// of the platform. A weight acts about a level axis. For a spring the upright axis is assumed. If
+// that is not axis `k`, the rates about `k` are taken as those about the platform's axis. Returns
+// whether there is one.
+bool infer_restoring_from_rates(Machine& m, int k, const std::string& seen = "one rate") {
   const Vec3 axis = Vec3::Unit(k);
   const bool swings = std::ranges::any_of(
       m.runs, [&](const Observation& run) { return !angles_of_swing(run, axis).row.empty(); });
-  if (!swings) return false;
-  const RestoringLaw law = law_of_swing(m.runs, axis);
-  m.why = restoring_law_text(law, seen);
+  if (!swings && !turns_over_weight(m.runs, axis)) return false;
+  const RestoringLaw law = swings ? law_of_swing(m.runs, axis) : RestoringLaw::weight;
+  m.why = swings ? restoring_law_text(law, seen + " that passes zero again and again")
+                 : seen + over_weight;
   const bool is_spring = law == RestoringLaw::spring;
   if (is_spring == (k == 2)) return true;
   m.rate_from = k;
@@ -250,7 +262,7 @@ void infer_one_axis(Machine& m) {
   for (int k = 0; k < 3; ++k) {
     if (!m.has((std::string("gyro_") + "xyz"[k] + "_rad_s").c_str())) continue;
     m.observe_as(Topology::one_axis, Vec3::Unit(k));
-    if (infer_oscillation_from_rates(m, k, "one rate that passes zero again and again")) return;
+    if (infer_restoring_from_rates(m, k)) return;
     m.why = std::string("the one gyro axis is ") + "xyz"[k] + ", so it turns about that alone.";
     return;
   }
@@ -259,16 +271,17 @@ void infer_one_axis(Machine& m) {
           " alone, so it turns about one axis: a wheel, a turntable, one angle of a spacecraft.";
   m.observe_as(Topology::one_axis);
   if (!has_angle) {
-    if (infer_oscillation_from_rates(m, 2, "one rate that passes zero again and again") &&
-        m.rate_from) {
+    if (infer_restoring_from_rates(m, 2) && m.rate_from) {
       m.rate_from.reset();
       m.observe_as(Topology::one_axis, m.platform.axis);
     }
     return;
   }
-  if (!swings(m.runs, Vec3::UnitZ())) return;
-  const RestoringLaw law = law_of_swing(m.runs, Vec3::UnitZ());
-  m.why = restoring_law_text(law, "one angle that swings about its mean");
+  const bool is_swing = swings(m.runs, Vec3::UnitZ());
+  if (!is_swing && !turns_over_weight(m.runs, Vec3::UnitZ())) return;
+  const RestoringLaw law = is_swing ? law_of_swing(m.runs, Vec3::UnitZ()) : RestoringLaw::weight;
+  m.why = is_swing ? restoring_law_text(law, "one angle that swings about its mean")
+                   : std::string("one angle") + over_weight;
   if (law != RestoringLaw::spring) m.observe_as(Topology::one_axis, Vec3::UnitX());
 }
 
@@ -318,10 +331,9 @@ void infer_machine(Machine& m) {
     const bool is_held = has_no_mean_rate(m.runs);
     if (const std::optional<int> swung = axis_of_swing(m.runs, is_held ? 0.5 : 0.2)) {
       m.observe_as(Topology::one_axis, Vec3::Unit(*swung));
-      if (infer_oscillation_from_rates(m, *swung,
-                                       std::string("three rates along one line, that about ") +
-                                           "xyz"[*swung] +
-                                           " the largest, which pass zero again and again")) {
+      if (infer_restoring_from_rates(m, *swung,
+                                     std::string("three rates along one line, that about ") +
+                                         "xyz"[*swung] + " the largest one")) {
         return;
       }
       m.observe_as(Topology::free);

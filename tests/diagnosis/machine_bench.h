@@ -68,10 +68,10 @@ struct DampedSwing {
 struct Swing {
   double k, dry, viscous, form;
 
-  std::vector<double> from(double angle_rad, double interval_s, int rows) const {
+  std::vector<double> from(double angle_rad, double interval_s, int rows, double rate = 0.0) const {
     constexpr int parts = 50;
     const double h = interval_s / parts;
-    double rate = 0.0, sign = angle_rad > 0.0 ? -1.0 : 1.0;
+    double sign = rate > 0.0 || (rate == 0.0 && angle_rad < 0.0) ? 1.0 : -1.0;
     bool rests = false;
     const auto acceleration = [&](double a, double w) {
       return -k * std::sin(a) - dry * sign - viscous * w - form * w * std::abs(w);

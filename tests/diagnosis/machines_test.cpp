@@ -360,6 +360,27 @@ TEST(Machines, LargeSwingsAreNamedByWeightAndDrag) {
               1e-3);
 }
 
+// A wheel with a heavy spot that coasts down about a level axis through fifteen turns. Only rates
+// are recorded: central differences of a finer motion.
+TEST(Machines, AHeavySpotIsNamedByTheRateAlone) {
+  constexpr double weight = 0.926, dry = 0.2, drag = 0.05, fine_s = 0.01;
+  const std::vector<double> angle_rad = Swing{weight, dry, drag, 0.0}.from(0.5, fine_s, 1202, 12.0);
+  std::vector<double> rate_rad_s;
+  for (size_t i = 1; i + 1 < angle_rad.size(); i += 4) {
+    rate_rad_s.push_back((angle_rad[i + 1] - angle_rad[i - 1]) / (2.0 * fine_s));
+  }
+  const Channel rate = noisy("rate_rad_s", rate_rad_s, 0.02, 4);
+  const Diagnosis d = diagnosed(machine("[platform]\ntopology = \"one_axis\"\naxis = \"x\"\n"),
+                                4.0 * fine_s, {rate});
+  EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
+  ASSERT_THAT(kinds_of(d),
+              UnorderedElementsAre("static_unbalance", "dry_friction", "bearing_drag"));
+  expect_near_truth(d, "dry_friction", "torque_N_m", dry, 0.0);
+  expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", drag, 0.0);
+  EXPECT_NEAR(parameter(d, "static_unbalance", "offset_m").value[2],
+              -weight / standard_gravity_m_s2, 0.006);
+}
+
 // Small swings by their closed form, θ = A e^(−c t/2) cos ω t. A drag that depends on a heading
 // that never changes is no rival of a drag.
 TEST(Machines, ADragHasNoRivalsInAHeadingThatNeverChanges) {

@@ -73,7 +73,7 @@ ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
   const int translation = Dynamics(model).first_of_translation();
   const bool hides_angle = model.platform.turns_about_one_axis() && !seen.has_some_attitude();
   const AxisReadings swing =
-      hides_angle ? angles_of_swing(seen, model.platform.axis) : AxisReadings();
+      hides_angle ? angles_from_rates(seen, model.platform.axis) : AxisReadings();
   const std::vector<double> angles_rad = seen.angles_rad(model.platform.axis, 0, seen.blocks());
   size_t at_swing = 0;
   for (size_t i = 0; i < seen.blocks(); i += stride) {
