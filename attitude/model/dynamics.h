@@ -108,6 +108,7 @@ class Dynamics {
     Lanes battery_current_A;
     Lanes array_power_W;
     Lanes illumination;
+    Lanes gravity_gradient_1_s2;  // see EvaluationContext
     // Readings of noiseless instruments; see EvaluationContext.
     Vec3Of<Lanes> gyro_rad_s;
     Vec3Of<Lanes> camera_error_rad;

@@ -6,6 +6,7 @@
 #include "attitude/disturbances/kind.h"
 #include "attitude/propagation/run.h"
 #include "attitude/propagation/sampling.h"
+#include "core/constants.h"
 #include "core/snapshot.h"
 
 namespace photorque {
@@ -25,6 +26,24 @@ std::vector<EventFunction> events_of(const Dynamics& dynamics, bool has_power_sy
     if (kind != nullptr && kind->has_eclipses) events.push_back(eclipse_event(dynamics));
   }
   return events;
+}
+
+// The step is limited so that no eclipse is missed: the steps of a body that hardly moves would
+// otherwise be longer than an eclipse. Its penumbra and the charge are resolved by the error of the
+// step.
+PropagationOptions options_of(const PropagationRun& run, const Dynamics& dynamics) {
+  constexpr double steps_per_orbit = 400.0;
+  PropagationOptions options = run.options;
+  const bool has_eclipses = std::ranges::any_of(run.model.disturbances, [](const Disturbance& d) {
+    const DisturbanceKind* kind = find_kind(d.kind);
+    return kind != nullptr && kind->has_eclipses;
+  });
+  const double mean_motion_rad_s = std::sqrt(dynamics.at(run.initial).gravity_gradient_1_s2[0]);
+  if (has_eclipses && mean_motion_rad_s > 0.0) {
+    options.max_step_s =
+        std::min(options.max_step_s, 2.0 * pi / mean_motion_rad_s / steps_per_orbit);
+  }
+  return options;
 }
 
 // The times of the rows of a recording.
@@ -86,8 +105,9 @@ RecordedRun::RecordedRun(const PropagationRun& run, std::function<void(double)> 
       thinning_(thinning(rows_, run.history_rows)),
       recorder_(run.sensors, run.seed),
       history_(dynamics_),
-      propagator_(dynamics_, run.initial, run.initial.time_s + run.duration_s, run.options, {},
-                  events_of(dynamics_, beside != nullptr)),
+      excursion_(run.initial),
+      propagator_(dynamics_, run.initial, run.initial.time_s + run.duration_s,
+                  options_of(run, dynamics_), {}, events_of(dynamics_, beside != nullptr)),
       sampler_(
           propagator_, times_.size(), [this](size_t i) { return times_[i].time_s; },
           [this](const Samples& samples) { take_in(samples); }) {
@@ -98,6 +118,7 @@ RecordedRun::RecordedRun(const PropagationRun& run, std::function<void(double)> 
 
 void RecordedRun::record() {
   if (instruments_) instruments_->follow(propagator_);
+  excursion_.follow(propagator_);
   hand_on();
   sampler_.follow();
 }
@@ -105,7 +126,7 @@ void RecordedRun::record() {
 void RecordedRun::keep(Snapshot& snapshot) {
   const auto components = static_cast<size_t>(dynamics_.size());
   snapshot.expect(components);
-  snapshot(propagator_, sampler_, recorder_, history_);
+  snapshot(propagator_, sampler_, recorder_, history_, excursion_);
   snapshot.each(states_, [&](PlatformState& state) {
     snapshot(state.time_s, state.lab_from_body, state.rate_body_rad_s, state.charge_drawn_C);
     state.extra.resize(components - component::extra);
@@ -131,18 +152,27 @@ void RecordedRun::hand_on() {
   }
 }
 
-void RecordedRun::record(const Samples& samples) {
+Dynamics::Instants RecordedRun::instants_at(const Samples& samples) const {
   Dynamics::Instants now = dynamics_.at(samples.time_s, samples.held, samples.y.data());
   for (int i = 0; beside_ != nullptr && i < samples.count; ++i) {
     const PowerState power = beside_->at(samples.time_s[i]);
     now.battery_current_A.set(i, power.battery_current_A);
     now.array_power_W.set(i, power.array_power_W);
   }
+  return now;
+}
+
+PlatformState RecordedRun::state_of(const Samples& samples, int lane) const {
+  PlatformState state = to_state(samples.time_s[lane], lane_of(samples.y, lane));
+  if (beside_ != nullptr) state.charge_drawn_C = beside_->at(state.time_s).charge_drawn_C;
+  return state;
+}
+
+void RecordedRun::record(const Samples& samples) {
+  const Dynamics::Instants now = instants_at(samples);
   for (int i = 0; i < samples.count; ++i) {
-    const std::vector<double> y = lane_of(samples.y, i);
-    PlatformState state = to_state(samples.time_s[i], y);
-    if (beside_ != nullptr) state.charge_drawn_C = beside_->at(state.time_s).charge_drawn_C;
-    record(times_[samples.first + static_cast<size_t>(i)], y, state, now, i);
+    record(times_[samples.first + static_cast<size_t>(i)], lane_of(samples.y, i),
+           state_of(samples, i), now, i);
   }
   if (progress_) progress_(static_cast<double>(states_.size()) / static_cast<double>(rows_));
 }
@@ -171,16 +201,32 @@ void RecordedRun::record(const Look& look, const std::vector<double>& y, const P
   states_.push_back(state);
 }
 
+// The state at the end of the run. If that is between two rows, it is added to the history.
+PlatformState RecordedRun::recorded_end() {
+  const double end_s = propagator_.step_end_s();
+  if (states_.size() == rows_ || !(end_s > states_.back().time_s)) return states_.back();
+  Samples end;
+  end.count = 1;
+  end.time_s = end_s;
+  end.held.fill(propagator_.held());
+  end.y.resize(static_cast<size_t>(dynamics_.size()));
+  propagator_.dense(end_s, end.y.data());
+  PlatformState state = state_of(end, 0);
+  history_.add(state, instants_at(end), 0);
+  return state;
+}
+
 PropagationResult RecordedRun::result() {
   sampler_.finish();
   for (const Samples& samples : waiting_) record(samples);
   waiting_.clear();
   PropagationResult result;
+  result.end = recorded_end();
   result.recording = recorder_.finish();
   result.states = std::move(states_);
   result.events = propagator_.events();
   result.statistics = propagator_.statistics();
-  result.product = history_.product(result.states, result.events, result.statistics);
+  result.product = history_.product(excursion_, result.events, result.statistics);
   return result;
 }
 

@@ -35,7 +35,8 @@ class RecordedRun {
   bool advance() { return propagator_.advance(); }
   // Records the rows within the last step, as far as the history `beside` extends.
   void record();
-  // The results; call it after the last step.
+  // The results; call it after the last step. If an event ended the run between two rows, the
+  // history ends with the state at the event.
   PropagationResult result();
 
   // Stores the state after a step, or restores it before the first step of an equal run.
@@ -54,6 +55,9 @@ class RecordedRun {
   void take_in(const Samples& samples);
   void hand_on();
   void record(const Samples& samples);
+  Dynamics::Instants instants_at(const Samples& samples) const;
+  PlatformState state_of(const Samples& samples, int lane) const;
+  PlatformState recorded_end();
   void record(const Look& look, const std::vector<double>& y, const PlatformState& state,
               const Dynamics::Instants& now, int lane);
 
@@ -66,6 +70,7 @@ class RecordedRun {
   size_t rows_, thinning_;
   Recorder recorder_;
   TimeHistory history_;
+  Excursion excursion_;
   Propagator propagator_;
   Sampler sampler_;
   std::optional<LiveInstruments> instruments_;

@@ -44,29 +44,6 @@ std::vector<double> unwrapped_deg(std::vector<double> angle_deg) {
   return angle_deg;
 }
 
-// Largest tilt and range of yaw during a run.
-struct Excursion {
-  double largest_tilt_rad = 0.0, largest_tilt_at_s = 0.0;
-  double yaw_rad = 0.0;  // largest minus least, with whole turns counted
-};
-Excursion excursion_of(const std::vector<PlatformState>& states) {
-  Excursion found;
-  double yaw = 0.0, least = 0.0, most = 0.0, before = 0.0;
-  for (size_t i = 0; i < states.size(); ++i) {
-    const double tilt = tilt_rad(states[i]), here = yaw_rad(states[i]);
-    if (i == 0 || tilt > found.largest_tilt_rad) {
-      found.largest_tilt_rad = tilt;
-      found.largest_tilt_at_s = states[i].time_s;
-    }
-    if (i > 0) yaw += std::remainder(here - before, 2.0 * pi);
-    before = here;
-    least = std::min(least, yaw);
-    most = std::max(most, yaw);
-  }
-  found.yaw_rad = most - least;
-  return found;
-}
-
 // Stacked bars: mean fraction of each kind in each 120th of the run, in percent of the sum of all
 // kinds, with the largest at the bottom. Kinds after the fifth are summed.
 std::vector<Plot::Curve> stacked_fractions(const std::vector<double>& t,
@@ -169,6 +146,66 @@ void add_torque_plots(const Table& history, const std::vector<std::string>& labe
 
 }  // namespace
 
+Excursion::Excursion(const PlatformState& initial)
+    : until_s_(initial.time_s),
+      largest_tilt_rad_(tilt_rad(initial)),
+      largest_tilt_time_s_(initial.time_s),
+      read_yaw_rad_(photorque::yaw_rad(initial)) {}
+
+void Excursion::follow(const Propagator& motion) {
+  constexpr int refinements = 3;  // each by a factor of four
+  const double end_s = motion.step_end_s();
+  if (!(end_s > until_s_)) return;
+  std::vector<Lanes> y(static_cast<size_t>(motion.dynamics().size()));
+  Lanes times_s;
+  for (int i = 0; i < Lanes::count; ++i) {
+    times_s.set(i, std::lerp(until_s_, end_s, (i + 1.0) / Lanes::count));
+  }
+  motion.dense(times_s, y.data());
+  for (int i = 0; i < Lanes::count; ++i) {
+    const double now_rad = photorque::yaw_rad(to_state(times_s[i], lane_of(y, i)));
+    yaw_rad_ += std::remainder(now_rad - read_yaw_rad_, 2.0 * pi);
+    read_yaw_rad_ = now_rad;
+    least_yaw_rad_ = std::min(least_yaw_rad_, yaw_rad_);
+    most_yaw_rad_ = std::max(most_yaw_rad_, yaw_rad_);
+  }
+  look(motion, until_s_, end_s, refinements);
+  until_s_ = end_s;
+}
+
+void Excursion::look(const Propagator& motion, double from_s, double to_s, int refinements) {
+  std::vector<Lanes> y(static_cast<size_t>(motion.dynamics().size()));
+  Lanes times_s;
+  for (int i = 0; i < Lanes::count; ++i) {
+    times_s.set(i, std::lerp(from_s, to_s, i / (Lanes::count - 1.0)));
+  }
+  motion.dense(times_s, y.data());
+  int highest = 0;
+  double highest_rad = -1.0;
+  for (int i = 0; i < Lanes::count; ++i) {
+    const double tilt = tilt_rad(to_state(times_s[i], lane_of(y, i)));
+    if (!(tilt > highest_rad)) continue;
+    highest = i;
+    highest_rad = tilt;
+  }
+  // Between two instants of a smooth motion the tilt rises little above both.
+  constexpr double little = 1.1;
+  if (!(little * highest_rad > largest_tilt_rad_)) return;
+  if (highest_rad > largest_tilt_rad_) {
+    largest_tilt_rad_ = highest_rad;
+    largest_tilt_time_s_ = times_s[highest];
+  }
+  const bool is_inside = highest > 0 && highest + 1 < Lanes::count;
+  if (refinements > 0 && is_inside) {
+    look(motion, times_s[highest - 1], times_s[highest + 1], refinements - 1);
+  }
+}
+
+void Excursion::keep(Snapshot& snapshot) {
+  snapshot(until_s_, largest_tilt_rad_, largest_tilt_time_s_, read_yaw_rad_, yaw_rad_,
+           least_yaw_rad_, most_yaw_rad_);
+}
+
 Plot::Curve thinned_curve(const std::vector<double>& x, const std::vector<double>& y) {
   constexpr size_t most = 1600;
   Plot::Curve curve;
@@ -255,8 +292,7 @@ void TimeHistory::keep(Snapshot& snapshot) {
   }
 }
 
-Product TimeHistory::product(const std::vector<PlatformState>& states,
-                             const std::vector<Event>& events,
+Product TimeHistory::product(const Excursion& excursion, const std::vector<Event>& events,
                              const Propagator::Statistics& statistics) const {
   Product product;
   product.tables.push_back(table_);
@@ -280,14 +316,13 @@ Product TimeHistory::product(const std::vector<PlatformState>& states,
   add_torque_plots(table_, labels_, plots);
 
   if (!t.empty()) {
-    const Excursion excursion = excursion_of(states);
     const auto last = [&](const std::string& column) { return column_of(table_, column).back(); };
     product.quantities = {
         {"final_time_s", {t.back()}},
         {"final_tilt_deg", {tilt_deg.back()}},
-        {"largest_tilt_deg", {excursion.largest_tilt_rad / degree_rad}},
-        {"largest_tilt_time_s", {excursion.largest_tilt_at_s}},
-        {"yaw_excursion_deg", {excursion.yaw_rad / degree_rad}},
+        {"largest_tilt_deg", {excursion.largest_tilt_rad() / degree_rad}},
+        {"largest_tilt_time_s", {excursion.largest_tilt_time_s()}},
+        {"yaw_excursion_deg", {excursion.yaw_rad() / degree_rad}},
         {"final_heading_deg", {last("heading_deg")}},
         {"final_yaw_deg", {yaw_deg.back()}},
         {"final_rate_rad_s",

@@ -20,6 +20,31 @@ Table event_table(const std::vector<Event>& events);
 // STEM_z_N_m.
 std::vector<double> torque_sizes(const Table& history, const std::string& stem);
 
+// Largest tilt and range of yaw during a run, from the states within the steps and not only those
+// of its rows.
+class Excursion {
+ public:
+  explicit Excursion(const PlatformState& initial);
+
+  // Call after every step.
+  void follow(const Propagator& motion);
+
+  double largest_tilt_rad() const { return largest_tilt_rad_; }
+  double largest_tilt_time_s() const { return largest_tilt_time_s_; }
+  // Largest minus least yaw, with whole turns counted.
+  double yaw_rad() const { return most_yaw_rad_ - least_yaw_rad_; }
+
+  void keep(Snapshot& snapshot);
+
+ private:
+  // Looks at eight instants in [from_s, to_s], refined about the largest tilt.
+  void look(const Propagator& motion, double from_s, double to_s, int refinements);
+
+  double until_s_, largest_tilt_rad_, largest_tilt_time_s_;
+  double read_yaw_rad_;                                              // the last, within a turn
+  double yaw_rad_ = 0.0, least_yaw_rad_ = 0.0, most_yaw_rad_ = 0.0;  // since the start
+};
+
 class TimeHistory {
  public:
   explicit TimeHistory(const Dynamics& dynamics);
@@ -29,9 +54,8 @@ class TimeHistory {
 
   // Tables "time_history" and "events". Plots "tilt", "yaw", "rates", "charge" and "array_power"
   // (if they are not zero), "torque_fractions" and "torques" (magnitudes of all torques), and one
-  // for each disturbance, of thinned_curve(). The largest tilt is taken from all `states` of the
-  // run, not only from the rows of this history.
-  Product product(const std::vector<PlatformState>& states, const std::vector<Event>& events,
+  // for each disturbance, of thinned_curve().
+  Product product(const Excursion& excursion, const std::vector<Event>& events,
                   const Propagator::Statistics& statistics) const;
 
   void keep(Snapshot& snapshot);

@@ -224,6 +224,47 @@ TEST(Run, EndsAtTheTiltStop) {
   EXPECT_GT(tilt_rad(result.states.back()), 11.5 * degree_rad);
   EXPECT_LT(result.recording.time_s.back(), result.events[0].time_s + 1e-12);
   EXPECT_LT(result.recording.rows(), 30u);
+  EXPECT_NEAR(tilt_rad(result.end), 12.0 * degree_rad, 1e-9);
+  const Table& history = result.product.tables.front();
+  EXPECT_EQ(history.column("t_s").values.back(), result.events[0].time_s);
+  EXPECT_NEAR(history.column("tilt_deg").values.back(), 12.0, 1e-7);
+}
+
+// A pendulum without friction rises by I ω²/2 = m g d (1 − cos θ), between two rows 20 s apart.
+TEST(Run, LargestTiltMayLieBetweenTheRows) {
+  const PropagationResult result = propagate(
+      run_with({"disturbance=[{kind='static_unbalance', offset_m=[0, 0, -4e-5]}]",
+                "propagate.initial_tilt_deg=0", "propagate.initial_rate_rad_s=[0.05, 0, 0]",
+                "propagate.output_rate_Hz=0.05"}));
+  EXPECT_EQ(result.recording.rows(), 2u);
+  const double largest_rad = std::acos(1.0 - 0.5 * 0.116 * 0.05 * 0.05 / (8.7 * 9.80665 * 4e-5));
+  EXPECT_NEAR(find_quantity(result.product, "largest_tilt_deg")->estimate.value,
+              largest_rad / degree_rad, 1e-4);
+}
+
+// A body at rest in a geostationary orbit, with the Sun at a fixed direction: one eclipse in every
+// period 2 π √(r³/μ). The integrator alone would take steps of many hours.
+TEST(Run, ABodyAtRestMissesNoEclipse) {
+  const PropagationResult result = propagate(run_with({}, R"([platform]
+topology = "free"
+mass_kg = 1000
+inertia_kg_m2 = [[1000, 0, 0], [0, 1100, 0], [0, 0, 1200]]
+[environment.sun]
+direction = [1, 0, 0.03]
+[[disturbance]]
+kind = "orbit"
+altitude_m = 35793e3
+inclination_deg = 0
+[propagate]
+duration_s = 864000
+output_rate_Hz = 0.001
+)"));
+  const double period_s = 2.0 * pi * std::sqrt(std::pow(6371.2e3 + 35793e3, 3) / 3.986004418e14);
+  ASSERT_EQ(result.events.size(), 20u);
+  for (size_t i = 0; i + 2 < result.events.size(); ++i) {
+    EXPECT_EQ(result.events[i].name, i % 2 == 0 ? "eclipse_begins" : "eclipse_ends");
+    EXPECT_NEAR(result.events[i + 2].time_s - result.events[i].time_s, period_s, 1e-3);
+  }
 }
 
 // The battery supplies the difference between the load and the power of the array, which is

@@ -24,7 +24,7 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
   // Runs with light and power print their energies instead.
   const Console motion = coupled.beside ? details : console;
   console.heading("Trajectory");
-  const PlatformState& end = result.states.back();
+  const PlatformState& end = result.end;
   motion.line("  " + padded("end of the run", 24) + show_duration(end.time_s));
   const auto figure = [&](const char* name) {
     const Quantity* found = find_quantity(result.product, name);
