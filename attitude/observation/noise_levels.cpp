@@ -80,7 +80,7 @@ bool stands_still(const std::vector<ReadingAt>& x, size_t first, size_t order) {
 
 // Collects the sizes of the differences of readings and of the second differences. They are
 // multiples of the last digit; second differences are small for a steady motion. Sizes below the
-// rounding of a file are left out.
+// rounding of a file are left out. Equal steps, as of a simulated steady motion, show no digit.
 void collect_steps(const std::vector<ReadingAt>& x, std::vector<double>& steps) {
   double largest = 0.0;
   for (const ReadingAt& reading : x) largest = std::max(largest, std::abs(reading.value));
@@ -91,13 +91,18 @@ void collect_steps(const std::vector<ReadingAt>& x, std::vector<double>& steps) 
   constexpr double of_largest = 1e-5, of_usual = 1e-2;
   const double rounding =
       firsts.empty() ? 0.0 : std::min(of_largest * largest, of_usual * upper_median(firsts));
+  const size_t before = steps.size();
+  bool changes = false;
   for (size_t i = 1; i < x.size(); ++i) {
     const double step = x[i].value - x[i - 1].value;
     if (std::abs(step) > rounding) steps.push_back(std::abs(step));
     if (i < 2) continue;
     const double change = step - (x[i - 1].value - x[i - 2].value);
-    if (std::abs(change) > rounding) steps.push_back(std::abs(change));
+    if (!(std::abs(change) > rounding)) continue;
+    steps.push_back(std::abs(change));
+    changes = true;
   }
+  if (!changes) steps.resize(before);
 }
 
 }  // namespace

@@ -190,8 +190,9 @@ void RecordedRun::record(const Look& look, const std::vector<double>& y, const P
   }
   Truth truth = truth_at(state, seen, now, lane);
   truth.place_m_m_s = place_of(dynamics_, y);
+  const ZeroOrderHold given = given_.at(state.time_s);
+  truth.wheel_rad_s = given.wheel.at(state.time_s);
   if (dynamics_.model().schedule.command_delay_s > 0.0) {
-    const ZeroOrderHold given = given_.at(state.time_s);
     truth.command_body_N_m = given.command_body_N_m;
     truth.command_lab_N = given.force_lab_N + state.lab_from_body * given.force_body_N;
   }

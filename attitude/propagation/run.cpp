@@ -422,6 +422,24 @@ PlatformState read_initial_state(const Settings& settings, const AttitudeModel& 
   return initial;
 }
 
+// InputError for a law of wheels without a speed.
+void require_wheel_speeds(const Settings& settings, const AttitudeModel& model) {
+  const bool has_speeds = std::ranges::any_of(
+      model.schedule.held, [](const ZeroOrderHold& held) { return held.wheel != WheelSpeeds{}; });
+  if (has_speeds) return;
+  for (const Disturbance& d : model.disturbances) {
+    const DisturbanceKind* kind = find_kind(d.kind);
+    const bool states_speed =
+        std::ranges::find(d.parameters, "speed_rad_s", &Parameter::key) != d.parameters.end();
+    if (kind == nullptr || kind->screening.needs != Requirement::wheel || states_speed) continue;
+    const bool has_key =
+        std::ranges::find(kind->keys, "speed_rad_s", &Key::name) != kind->keys.end();
+    throw settings.error(propagate_key::commands, "no speed of the wheel of " + d.kind,
+                         std::string(has_key ? "its key speed_rad_s, or " : "") +
+                             "a file with wheel_x_rad_s, wheel_y_rad_s or wheel_z_rad_s");
+  }
+}
+
 }  // namespace
 
 PropagationRun read_propagation(const Settings& root) {
@@ -447,6 +465,7 @@ PropagationRun read_propagation(const Settings& root) {
   }
   run.options.tick_rate_Hz = settings.get(propagate_key::tick_rate);
   run.model.schedule = read_schedule(settings);
+  require_wheel_speeds(settings, run.model);
   const std::optional<std::string> epoch = stated_epoch(settings);
   run.epoch = epoch.value_or("2000-01-01T00:00:00");
   if (!parse_epoch(run.epoch)) {

@@ -300,6 +300,9 @@ void Recorder::add(const Truth& truth) {
   put("command_x_N_m", truth.command_body_N_m.x());
   put("command_y_N_m", truth.command_body_N_m.y());
   put("command_z_N_m", truth.command_body_N_m.z());
+  put("wheel_x_rad_s", truth.wheel_rad_s.x());
+  put("wheel_y_rad_s", truth.wheel_rad_s.y());
+  put("wheel_z_rad_s", truth.wheel_rad_s.z());
   put("battery_current_A", truth.battery_current_A + sensors_.power.current_noise_A *
                                                          gaussian(seed_, current_noise, row, 0));
   put("array_power_W",
@@ -317,6 +320,7 @@ Recording Recorder::finish() {
       static_cast<int64_t>(recording_.rows());
   std::erase_if(recording_.channels, [](const Channel& channel) {
     const bool optional = channel.name.starts_with("command") ||
+                          channel.name.starts_with("wheel") ||
                           channel.name.starts_with("battery") || channel.name.starts_with("array");
     return optional && std::ranges::all_of(channel.values, [](double x) { return x == 0.0; });
   });

@@ -112,6 +112,7 @@ struct Truth {
   Vec3 camera_error_rad = Vec3::Zero();
   Vec3 command_body_N_m = Vec3::Zero();
   Vec3 command_lab_N = Vec3::Zero();
+  Vec3 wheel_rad_s = Vec3::Zero();
   double battery_current_A = 0.0;
   double array_power_W = 0.0;
 };

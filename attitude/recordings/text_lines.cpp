@@ -142,16 +142,6 @@ std::string whole_text(const std::filesystem::path& path, const std::vector<std:
   return text;
 }
 
-std::optional<double> number_of_cell(std::string_view cell, char separator) {
-  if (cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA") return NAN;
-  const std::optional<double> number = number_in(cell);
-  const size_t comma = cell.find(',');
-  if (number || separator == ',' || comma == std::string_view::npos) return number;
-  std::string with_point(cell);
-  with_point[comma] = '.';
-  return number_in(with_point);
-}
-
 std::string gzip(const std::string& text) {
   z_stream stream{};
   constexpr int gzip_window = 15 + 16;

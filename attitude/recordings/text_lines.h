@@ -49,10 +49,6 @@ class TextLines {
 std::string whole_text(const std::filesystem::path& path,
                        const std::vector<std::string>& header = {});
 
-// The number of a cell. A comma in it is a decimal comma unless commas separate cells. NaN for an
-// empty cell and for the words nan, NaN and NA; nothing for other texts.
-std::optional<double> number_of_cell(std::string_view cell, char separator);
-
 // Compresses to the gzip format, without name or time, so that equal texts give equal bytes.
 std::string gzip(const std::string& text);
 

@@ -137,6 +137,23 @@ std::optional<double> number_in(std::string_view text) {
   return value;
 }
 
+char separator_of(std::string_view header) {
+  for (const char separator : {'\t', ';', ','}) {
+    if (header.find(separator) != std::string_view::npos) return separator;
+  }
+  return ' ';
+}
+
+std::optional<double> number_of_cell(std::string_view cell, char separator) {
+  if (cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA") return NAN;
+  const std::optional<double> number = number_in(cell);
+  const size_t comma = cell.find(',');
+  if (number || separator == ',' || comma == std::string_view::npos) return number;
+  std::string with_point(cell);
+  with_point[comma] = '.';
+  return number_in(with_point);
+}
+
 double require_number(std::string_view text, const InputLocation& where, const std::string& what,
                       const std::string& expected) {
   if (const auto value = number_in(text)) return *value;
@@ -160,13 +177,19 @@ std::string shortest(double value) {
 
 namespace {
 
-std::vector<std::string> read_header(DataLines& lines) {
+struct ColumnNames {
+  char separator = ',';
+  std::vector<std::string> names;
+};
+
+ColumnNames read_header(DataLines& lines) {
   std::string_view line;
   if (!lines.next(line)) {
     throw InputError(lines.where(), "", "nothing", "a header with the names of the columns");
   }
-  const std::vector<std::string_view> cells = cells_of(line);
-  return {cells.begin(), cells.end()};
+  const char separator = separator_of(line);
+  const std::vector<std::string_view> cells = cells_of(line, separator);
+  return {separator, {cells.begin(), cells.end()}};
 }
 
 }  // namespace
@@ -176,7 +199,8 @@ NumberColumns read_number_columns(const std::filesystem::path& path,
   const std::string text = read_file(path);
   DataLines lines(text, path.string());
   NumberColumns result;
-  result.header = read_header(lines);
+  auto [separator, header] = read_header(lines);
+  result.header = std::move(header);
   std::vector<size_t> places;
   for (const std::string& name : names) {
     const auto found = std::find(result.header.begin(), result.header.end(), name);
@@ -197,7 +221,7 @@ NumberColumns read_number_columns(const std::filesystem::path& path,
   result.columns.resize(names.size());
   std::vector<std::string_view> cells;
   for (std::string_view line; lines.next(line);) {
-    split_cells(line, ',', cells);
+    split_cells(line, separator, cells);
     // For example decimal commas, which would shift the following cells.
     if (cells.size() > result.header.size()) {
       throw InputError(lines.where(), "", "a row of " + std::to_string(cells.size()) + " cells",
@@ -206,7 +230,11 @@ NumberColumns read_number_columns(const std::filesystem::path& path,
     }
     for (size_t i = 0; i < names.size(); ++i) {
       const std::string_view cell = places[i] < cells.size() ? cells[places[i]] : "";
-      result.columns[i].push_back(require_number(cell, lines.where(), names[i], "a finite number"));
+      const std::optional<double> number = number_of_cell(cell, separator);
+      result.columns[i].push_back(
+          number && std::isfinite(*number)
+              ? *number
+              : require_number(cell, lines.where(), names[i], "a finite number"));
     }
     result.lines.push_back(lines.where().line);
   }
@@ -216,7 +244,7 @@ NumberColumns read_number_columns(const std::filesystem::path& path,
 std::vector<std::string> read_column_names(const std::filesystem::path& path) {
   const std::string text = read_file(path);
   DataLines lines(text, path.string());
-  return read_header(lines);
+  return read_header(lines).names;
 }
 
 JsonExtent extent_of_json(std::string_view text) {

@@ -32,6 +32,13 @@ std::vector<std::string_view> cells_of(std::string_view line, char separator = '
 // Splits a line into `cells`, for readers of millions of lines.
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
 
+// The separator of the cells of a header: the first of tab, semicolon and comma that it contains,
+// otherwise the blank.
+char separator_of(std::string_view header);
+// The number of a cell. A comma in it is a decimal comma unless commas separate cells. NaN for an
+// empty cell and for the words nan, NaN and NA; nothing for other texts.
+std::optional<double> number_of_cell(std::string_view cell, char separator);
+
 // The pieces between any number of separating characters; none is empty.
 std::vector<std::string_view> words_of(std::string_view line,
                                        std::string_view separators = " \t\r\v\f");

@@ -14,13 +14,6 @@ namespace photorque {
 namespace curve_text {
 namespace {
 
-char separator_of(std::string_view header) {
-  for (const char separator : {'\t', ';', ','}) {
-    if (header.find(separator) != std::string_view::npos) return separator;
-  }
-  return ' ';
-}
-
 std::vector<std::string_view> split(std::string_view line, char separator) {
   if (separator != ' ') return cells_of(line, separator);
   return words_of(line, " \t");

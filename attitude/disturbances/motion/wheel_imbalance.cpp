@@ -109,13 +109,13 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "wheel_imbalance",
-      .summary = "a wheel that is not balanced shakes the platform at its speed",
-      .read = read,
-      .screening = {.reason_against = "at constant speed, `periodic_torque` has the same effect"},
-      .keys = {direction, static_imbalance, position, dynamic_imbalance, speed, static_phase,
-               dynamic_phase}};
+  return {.name = "wheel_imbalance",
+          .summary = "a wheel that is not balanced shakes the platform at its speed",
+          .read = read,
+          .screening = {.reason_against = "its torque turns with the wheel, whose phase is unknown",
+                        .needs = Requirement::wheel},
+          .keys = {direction, static_imbalance, position, dynamic_imbalance, speed, static_phase,
+                   dynamic_phase}};
 }
 
 }  // namespace photorque::kinds::wheel_imbalance

@@ -44,8 +44,9 @@ std::vector<ColumnsOfKind> columns_of_kinds() {
 
 class LightHeader {
  public:
-  LightHeader(std::string_view line, const std::map<std::string, std::string>& columns) {
-    for (std::string_view cell : cells_of(line)) {
+  LightHeader(std::string_view line, const std::map<std::string, std::string>& columns)
+      : separator_(separator_of(line)) {
+    for (std::string_view cell : cells_of(line, separator_)) {
       if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
         cell = cell.substr(1, cell.size() - 2);
       }
@@ -62,6 +63,7 @@ class LightHeader {
     }
     for (const auto& [name, written] : columns) ignore_beside(name, written);
   }
+  char separator() const { return separator_; }
   size_t columns() const { return names_.size(); }
   const std::vector<std::string>& names() const { return names_; }
   // The header cells as written.
@@ -117,6 +119,7 @@ class LightHeader {
     }
   }
 
+  char separator_;
   std::vector<std::string> names_, written_;
   std::vector<KeyUnit> units_;
 };
@@ -207,8 +210,9 @@ void require_whole_attitude(const LightHeader& header, const ColumnsOfLight& col
 // Reads one row; each function returns the reason for a rejection, or an empty string.
 class RowReader {
  public:
-  RowReader(const ColumnsOfLight& columns, const DefaultConditions& usual, LightRecording& into)
-      : columns_(columns), usual_(usual), into_(into) {}
+  RowReader(const ColumnsOfLight& columns, char separator, const DefaultConditions& usual,
+            LightRecording& into)
+      : columns_(columns), separator_(separator), usual_(usual), into_(into) {}
 
   std::string add(const std::vector<std::string_view>& cells) {
     cells_ = &cells;
@@ -266,7 +270,7 @@ class RowReader {
 
   double value(const std::optional<LightColumn>& column) const {
     if (!column || column->place >= cells_->size()) return absent;
-    const auto number = number_in((*cells_)[column->place]);
+    const auto number = number_of_cell((*cells_)[column->place], separator_);
     return number ? *number * column->to_SI : absent;
   }
 
@@ -285,6 +289,7 @@ class RowReader {
   }
 
   const ColumnsOfLight& columns_;
+  char separator_;
   const DefaultConditions& usual_;
   LightRecording& into_;
   const std::vector<std::string_view>* cells_ = nullptr;
@@ -520,7 +525,7 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   require_whole_attitude(*header, columns, path);
   recording.has_temperatures = columns.temperature.has_value();
   recording.has_attitudes = columns.q[0].has_value() || (columns.tilt && columns.heading);
-  RowReader reader(columns, usual, recording);
+  RowReader reader(columns, header->separator(), usual, recording);
   std::string_view line;
   std::vector<std::string_view> cells;
   const std::string wrong_length = "wrong number of cells";
@@ -529,7 +534,7 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   size_t cells_there = 0;
   while (next_line(lines, line)) {
     ++recording.rows_read;
-    split_cells(line, ',', cells);
+    split_cells(line, header->separator(), cells);
     const std::string reason = cells.size() == header->columns() ? reader.add(cells) : wrong_length;
     if (reason == wrong_length && ++of_wrong_length == 1) {
       first_of_wrong_length = static_cast<int>(lines.number());
