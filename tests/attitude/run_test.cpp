@@ -93,6 +93,8 @@ TEST(Experiment, WrongInputIsOneClearLine) {
       {"propagate.duration_s=0.0", "propagate.duration_s"},
       {"propagate.output_rate_Hz=1e7", "20 million"},
       {"propagate.commands='no_such_commands.csv'", "no_such_commands.csv"},
+      {"disturbance[1]={kind='wheel_momentum', inertia_kg_m2=1e-4}",
+       "propagate.commands: found no speed of the wheel of wheel_momentum"},
       {"propagate.longest_step_s=1e-12", "propagate.longest_step_s"},
       {"propagate.epoch='9999-12-31T23:59:40'",
        "propagate.epoch: found an end after the year 9999"},
@@ -197,6 +199,17 @@ TEST(Run, GivesHistoryPlotsAndRecording) {
     EXPECT_TRUE(plots.contains(name)) << name;
   }
   EXPECT_FALSE(columns.contains("torque_gyro_bias_x_N_m"));
+}
+
+TEST(Run, RecordsTheSpeedsOfWheels) {
+  const std::string file = new_file("t_s,wheel_y_rad_s\n0,10\n30,40\n", ".csv").string();
+  const PropagationResult result = propagate(run_with({"propagate.commands='" + file + "'"}));
+  const Channel* wheel = result.recording.find("wheel_y_rad_s");
+  ASSERT_NE(wheel, nullptr);
+  EXPECT_EQ(result.recording.find("wheel_x_rad_s"), nullptr);
+  for (const size_t i : {0U, 150U, 300U}) {
+    EXPECT_NEAR(wheel->values[i], 10.0 + result.recording.time_s[i], 1e-9) << i;
+  }
 }
 
 // Drag only: the spin, the torque and the recorded rate decrease as exp(−c t/I).

@@ -100,6 +100,13 @@ TEST(Columns, AreFoundByNameAndWrongCellsByLine) {
   // Decimal commas: once the numbers after them were read in the wrong columns.
   write_file_whole(path, std::string("a,c\n1,2\n0,5,7\n"));
   EXPECT_THAT(message("c"), HasSubstr("text_test.csv:3: found a row of 3 cells, expected 2"));
+  // Where semicolons or tabs separate, a comma is a decimal comma.
+  for (const std::string text : {"a;b\n1,5;2\n", "a\tb\n1.5\t2\n"}) {
+    write_file_whole(path, text);
+    const NumberColumns other = read_number_columns(path, {"b", "a"});
+    EXPECT_THAT(other.columns[0], ElementsAre(2.0));
+    EXPECT_THAT(other.columns[1], ElementsAre(1.5));
+  }
   std::filesystem::remove(path);
 }
 

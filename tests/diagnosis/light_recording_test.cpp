@@ -53,6 +53,20 @@ TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
   EXPECT_EQ(run.rejected.at("unreadable attitude"), 1);
 }
 
+TEST(LightRecordings, SemicolonsAndTabsSeparateToo) {
+  for (const char* text : {"u_m;v_m;irradiance_W_m2\n0,01;0,02;300,5\n0,03;0,02;301\n",
+                           "u_m\tv_m\tirradiance_W_m2\n0.01\t0.02\t300.5\n0.03\t0.02\t301\n"}) {
+    const auto scan = read(text);
+    EXPECT_EQ(scan.kind, LightRecording::Kind::scan);
+    EXPECT_THAT(scan.u_m, testing::ElementsAre(0.01, 0.03));
+    EXPECT_THAT(scan.irradiance_W_m2, testing::ElementsAre(300.5, 301.0));
+  }
+  const auto sweep = read("voltage_V;current_A;cell_temperature_K\n1,5;0,25;310\n");
+  EXPECT_EQ(sweep.kind, LightRecording::Kind::sweep);
+  EXPECT_EQ(sweep.current_A[0], 0.25);
+  EXPECT_EQ(sweep.temperature_K[0], 310.0);
+}
+
 // One reading written fifty times is one reading: its noise is not that of a mean of fifty.
 TEST(LightRecordings, CopiesOfARowAreLeftOut) {
   std::string rows = "u_m,v_m,irradiance_W_m2\n0.01,0.02,300\n0.01,0.02,301\n";

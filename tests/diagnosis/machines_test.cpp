@@ -451,6 +451,11 @@ TEST(Machines, ReadingsDetermineTheirNoise) {
   EXPECT_NEAR(*reading_level(runs, 5), 0.02, 4.0 * 0.02 * 1.4 / std::sqrt(2000.0));
   EXPECT_NEAR(*reading_level(runs, 4), 0.5 / std::sqrt(12.0), 1e-12);
   EXPECT_FALSE(reading_level(runs, 3));
+  // Equal steps, as of a simulated steady turn, are no last digit.
+  const Channel steady{"gyro_x_rad_s", sampled(0.1, 200, [](double t) { return 0.1 * t; })};
+  const std::vector<Observation> turn = {
+      observe(recording_of(0.1, {steady}), "turn.csv", {}, 5000)};
+  EXPECT_LT(reading_level(turn, 3).value_or(0.0), 1e-9);
 }
 
 // Motion that the rows follow coarsely, one row in three missing: twenty readings a period.
