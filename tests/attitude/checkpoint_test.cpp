@@ -111,7 +111,8 @@ TEST(Propagation, AShortHistoryEndsWithTheRun) {
       EXPECT_EQ(q.estimate.value, 60.0);
     }
     if (q.name == "largest_tilt_deg") {
-      EXPECT_NEAR(q.estimate.value, largest_rad / degree_rad, 1e-12);
+      EXPECT_GE(q.estimate.value, largest_rad / degree_rad);
+      EXPECT_LT(q.estimate.value, largest_rad / degree_rad + 1e-4);  // between two rows
     }
   }
 }

@@ -161,7 +161,10 @@ Beginning find_header(TextLines& lines, const std::map<std::string, std::string>
   for (int i = 0; i < most && next_line(lines, line); ++i) {
     LightHeader header(line, columns);
     if (is_foreign_curve(line, columns)) return {{}, true, curve_header_cells(line), {}};
-    if (header.kind()) return {header, false, header.written(), {}};
+    // Only the reader of curves knows the conditions in the comments of instruments.
+    const bool is_curve = header.kind() == LightRecording::Kind::sweep &&
+                          header.separator() != ',' && is_curve_header(line, columns);
+    if (header.kind() && !is_curve) return {header, false, header.written(), {}};
     if (is_curve_header(line, columns)) return {{}, true, curve_header_cells(line), {}};
     if (unknown.missing.empty()) unknown.missing = header.missing();
   }
