@@ -186,7 +186,7 @@ void print_table(const Console& console, const Table& table,
     for (const double value : column->values) {
       if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
     }
-    for (const double value : column->values) texts.push_back(brief(value, 1e-12 * largest));
+    for (const double value : column->values) texts.push_back(brief(value, 1e-14 * largest));
     cells.push_back(std::move(texts));
   }
   if (cells.empty()) return;
