@@ -234,7 +234,7 @@ std::vector<std::string> missed_tolerance(const RotationTable& table, double tol
            readable_number(100.0 * error.max[g] / error.scale[g], 3) + " %";
   }
   if (off.empty()) return {};
-  return {"the table of light over attitude exceeds light.tolerance = " + shortest(tolerance) +
+  return {"the errors of the table of light exceed light.tolerance = " + shortest(tolerance) +
           " of the largest: " + off + "; increase light.max_traces or light.rays"};
 }
 
