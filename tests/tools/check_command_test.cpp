@@ -170,7 +170,7 @@ TEST_F(CheckCommand, NewWritesAnExperimentThatRuns) {
   succeed("trace " + at("lab/lit.toml") + " --out " + at("out"));
   const std::string free = at("lab/free.toml");
   const auto json = nlohmann::json::parse(succeed("new " + free + " --json").out);
-  EXPECT_EQ(json["commands"][0]["name"], "budget");
+  EXPECT_EQ(json["commands"][0]["name"], "propagate");
   EXPECT_TRUE(json["mistakes"].empty());
   succeed("propagate " + free + " --out " + at("out2"));
   // Existing files stay.
