@@ -114,7 +114,7 @@ void require_plain_file(const fs::path& path) {
       break;
     case fs::file_type::fifo:
     case fs::file_type::socket:
-      refuse("a pipe, which can be read but once");
+      refuse("a pipe, which can be read only once");
       break;
     case fs::file_type::not_found:
       refuse("no such file");

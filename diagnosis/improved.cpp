@@ -86,7 +86,7 @@ void add_effect(TomlDocument& document, const FoundEffect& effect, const std::st
 }
 
 void add_unnamed(TomlDocument& document, const FoundEffect& effect, bool with_initial_states) {
-  document.comment("Fitted beside, without being proved: " + effect.kind + ".");
+  document.comment("Also fitted, but not significant: " + effect.kind + ".");
   TomlTable& table = document.append("disturbance");
   add_kind(document, table, effect.kind);
   add_values(document, table, effect.parameters);
@@ -95,7 +95,7 @@ void add_unnamed(TomlDocument& document, const FoundEffect& effect, bool with_in
 
 void add_empirical(TomlDocument& document, const EmpiricalTorque& torque) {
   document.comment("A torque that depends on " + torque.variable +
-                   " and follows no law of the catalogue, fitted without one.");
+                   " but on no known law; it is described by a fitted function.");
   if (!torque.formula.empty()) document.comment(torque.formula);
   if (!torque.looks_like.empty()) document.comment("Looks like " + torque.looks_like + ".");
   if (torque.parameters.empty()) return;
@@ -181,7 +181,7 @@ std::string improved_experiment(TomlDocument document, const Diagnosis& diagnosi
   for (const EmpiricalTorque& torque : diagnosis.empirical) add_empirical(document, torque);
   if (replay) add_replay(document, *replay, folder);
   if (!others.empty()) {
-    document.comment("The same recordings narrow the uncertain numbers of the nominal model to:");
+    document.comment("Uncertain numbers of the nominal model, with the errors after the fit:");
   }
   for (const FittedParameter& p : others) {
     document.comment("  " + p.key + " = " + toml_value(value_of(p)));

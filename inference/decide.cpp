@@ -56,7 +56,8 @@ class Judge {
                     !lowers_held_out(empirical, limits_.max_held_out_fraction) ||
                     !(checks_.excess_sigma(empirical) < limits_.max_excess_sigma);
     if (!d.leaves_more) d.beside_law = indispensable(empirical);
-    // The empirical law is an approximation: several effects together may only absorb its residual.
+    // The empirical law is an approximation. Several effects beside it may merely absorb its
+    // residual.
     if (d.beside_law.size() > 1) d.beside_law.clear();
     std::erase_if(d.beside_law,
                   [&](size_t c) { return !is_clear(trials_[empirical], c, limits_); });

@@ -163,8 +163,8 @@ std::string band_label(const Bands& bands, size_t band) {
   return nm(low_m) + "-" + nm(high_m) + "nm";
 }
 
-// The weight makes the map's mean an average over the surface: bins at its edge contain little of
-// it.
+// Weighted by area, the mean of the map is the mean over the surface. Bins at an edge contain
+// little surface.
 Map density_map(const SurfaceGrid& grid, const FluxLayer& layer, const std::string& name,
                 const std::string& title) {
   Map map = grid_map(grid, layer.per_bin_W_m2, name, title, "W/m²");

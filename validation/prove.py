@@ -81,23 +81,25 @@ def _version(program):
 
 def plan_text(plan):
     """Description of the plan."""
-    counts = [(plan.per_kind, "of every kind"), (plan.pairs, "pairs")]
+    groups = [[(plan.per_kind, "of every kind"), (plan.pairs, "pairs")]]
     if plan.of == "light":
-        counts += [(plan.none, "with nothing missing"), (plan.outside, "of every law outside the catalogue"),
-                   (plan.below, "below the limit")]  # fmt: skip
+        groups += [[(plan.none, "with nothing missing"), (plan.outside, "of every law outside the catalogue"),
+                    (plan.below, "below the limit")]]  # fmt: skip
     else:
-        counts += [(plan.triples, "triples"), (plan.known_unknown, "with a known effect and an unknown law"),
-                   (plan.outside, "of every law outside the catalogue"), (plan.none, "with nothing missing"),
-                   (plan.noise_none, "with nothing missing and noise not as stated"),
-                   (plan.noise_effect, "of one effect under correlated noise")]  # fmt: skip
-    text = ", ".join(f"{count} {what}" for count, what in counts if count > 0)
-    text += "; " if text else ""
+        groups[0] += [(plan.triples, "triples")]
+        groups += [[(plan.known_unknown, "with a known effect and an unknown law"),
+                    (plan.outside, "of every law outside the catalogue")],
+                   [(plan.none, "with nothing missing"),
+                    (plan.noise_none, "with nothing missing and noise not as stated"),
+                    (plan.noise_effect, "of one effect under correlated noise")]]  # fmt: skip
+    lists = [", ".join(f"{count} {what}" for count, what in group if count > 0) for group in groups]
+    text = "".join(f"{one}. " for one in lists if one)
+    damaged = f"{100.0 * plan.dirty_share:g} % of the files are damaged; seed {plan.seed}."
     if plan.of == "light":
-        return f"{text}{100.0 * plan.dirty_share:g} % of the files dirty; seed {plan.seed}."
+        return text + damaged
     rates = ", ".join(f"{rate:g}" for rate in plan.rates_Hz)
-    return (f"{text}{100.0 * plan.second_maker_share:g} % of the second generator, the others recordings of "
-            f"{plan.duration_s:g} s and hold-outs of {plan.holdout_s:g} s at {rates} Hz, "
-            f"{100.0 * plan.dirty_share:g} % of the files dirty; seed {plan.seed}.")  # fmt: skip
+    return (f"{text}{100.0 * plan.second_maker_share:g} % are of the second generator. The others are recordings of "
+            f"{plan.duration_s:g} s with hold-outs of {plan.holdout_s:g} s at {rates} Hz. {damaged}")  # fmt: skip
 
 
 def _maker(plan):

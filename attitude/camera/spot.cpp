@@ -95,7 +95,7 @@ Score score_of(const Spot& spot, const PixelNoise& noise, const PixelWindow& win
   return sum;
 }
 
-// Random words for the distributions of the standard library.
+// Random 64-bit numbers for the distributions of the standard library.
 class HashedBits {
  public:
   using result_type = uint64_t;

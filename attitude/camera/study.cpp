@@ -217,8 +217,8 @@ std::vector<Map> lean_maps(const CameraStudy& study) {
   const double edge_deg = study.max_tilt_rad / degree_rad * (1.0 + 1.0 / study.grid);
   frame.x_low = frame.y_low = -edge_deg;
   frame.x_high = frame.y_high = edge_deg;
-  frame.x_label = "lean towards lab x [deg]";
-  frame.y_label = "lean towards lab y [deg]";
+  frame.x_label = "tilt towards lab x [deg]";
+  frame.y_label = "tilt towards lab y [deg]";
   frame.smooth = true;
   const double step_deg = 2.0 * edge_deg / study.grid;
   const auto squares_at = [&](double x_deg, double y_deg) -> Pair {

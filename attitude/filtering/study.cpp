@@ -104,7 +104,8 @@ std::vector<std::string> unseen_by(const Platform& platform, const Readings& rea
                                    const Estimation& e) {
   std::vector<std::string> lines;
   if (!readings.sees_attitude() && !readings.has_yaw) {
-    lines.push_back("no attitude was read: it counts from the start, and its error grows");
+    lines.push_back(
+        "no attitude was measured: it is relative to the start, and its error increases");
   } else if (!readings.sees_attitude()) {
     lines.push_back(
         "only the yaw of the attitude was measured; the tilt at the start is assumed to be 0 ± "
@@ -145,12 +146,13 @@ std::vector<std::string> unseen_by(const Platform& platform, const Readings& rea
     constexpr double far = 3.0;
     if (moved > far) {
       lines.push_back(parameters.columns[0].texts[i] +
-                      printed(" has moved by %.1f of its sigmas: not to be trusted", moved));
+                      printed(" changed by %.1f of its sigmas: the estimate may be wrong", moved));
     }
     if (how != "yes") {
-      lines.push_back(parameters.columns[0].texts[i] +
-                      (how == "no" ? " does not show in the readings"
-                                   : " shows in part: its error is still more than 0.3 of before"));
+      lines.push_back(
+          parameters.columns[0].texts[i] +
+          (how == "no" ? " is not determined by the readings"
+                       : " is partly determined: its error is more than 0.3 of the prior error"));
     }
   }
   return lines;

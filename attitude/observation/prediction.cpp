@@ -148,7 +148,7 @@ class Comparison {
   void add(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples) {
     const ExpectedReadings expected(dynamics, sensitivity, samples, seen_, scalars_);
     // Stops early, because the rest would not improve the decision.
-    if (chi2_ > max_chi2_) throw NumericalError("the prediction has left the readings");
+    if (chi2_ > max_chi2_) throw NumericalError("the prediction has diverged from the readings");
     for (int lane = 0; lane < samples.count; ++lane) {
       const size_t instant = samples.first + static_cast<size_t>(lane),
                    block = instant / instants_.per_block();

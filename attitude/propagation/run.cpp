@@ -57,8 +57,8 @@ constexpr NumbersKey initial_velocity("initial_velocity_m_s", {},
                                       "velocity of a planar platform at the start, lab x and y",
                                       {.usually = "0, 0", .size = 2});
 constexpr IntegerKey initial_turns("initial_turns", 0, -1'000'000, 1'000'000,
-                                   "whole turns about the only axis before the start, which a "
-                                   "twisted line counts");
+                                   "number of whole turns before the start, about the axis of a "
+                                   "one-axis platform; they twist a `tether`");
 constexpr NumberKey initial_charge("initial_charge_Ah", 0.0, {},
                                    "charge drawn from the battery before the start");
 constexpr NumberKey initial_time(
@@ -219,8 +219,8 @@ Quat with_initial_yaw(const Settings& settings, const Quat& lean) {
   const Vec3 up = lean * Vec3::UnitZ(), level(std::cos(yaw_rad), std::sin(yaw_rad), 0.0);
   constexpr double least = 1e-6;  // cosine of the tilt: below, body x has no azimuth
   if (std::abs(up.z()) < least) {
-    throw settings.error(propagate_key::initial_yaw, "a platform that leans by 90 deg",
-                         "initial_attitude instead: body x has no azimuth of choice there");
+    throw settings.error(propagate_key::initial_yaw, "a tilt of 90 deg",
+                         "initial_attitude instead: at this tilt, the yaw cannot be chosen");
   }
   // Body x is perpendicular to body z, above or below the horizontal line of that azimuth.
   const Vec3 x = (std::abs(up.z()) * level -
@@ -277,7 +277,7 @@ void check_begins_about_axis(const Settings& settings, const Platform& platform,
     throw settings.error(
         settings.has(propagate_key::initial_attitude) ? propagate_key::initial_attitude.name
                                                       : propagate_key::initial_tilt.name,
-        "a turn about another axis than the bearings leave", "a rotation about platform.axis only");
+        "a rotation about an axis that the bearings block", "a rotation about platform.axis only");
   }
 }
 

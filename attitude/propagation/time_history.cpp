@@ -217,7 +217,7 @@ Plot::Curve thinned_curve(const std::vector<double>& x, const std::vector<double
 }
 
 Table event_table(const std::vector<Event>& events) {
-  Table table = Table::of("events", "What happened");
+  Table table = Table::of("events", "Events");
   for (const Event& event : events) {
     table.row().set("event", event.name).set("t_s", event.time_s);
   }

@@ -95,21 +95,21 @@ void add_bearing(std::vector<PaperFigure>& all, const PaperInputs& in) {
       "budget.bearing; ";
   all.push_back({"bearing_load_mean_error", "II.B.1", 0.24,
                  std::abs(drag.load_as_published_N / drag.rated_load_N - 1.0), nan,
-                 data + "eq. 7 against the film at its rated gap: it leaves out projection and "
+                 data + "eq. 7 compared with the film at its rated gap: eq. 7 omits projection and "
                         "ambient pressure"});
   all.push_back(
       {"bearing_drag_mean_ratio", "II.B.1", 19.63, drag.ratio_film, nan,
-       data + "eq. 17 at the rated gap against the unloaded ball on which catalogues "
-              "measure: the film opens that many times; recess and grooves must do the rest"});
+       data + "eq. 17 at the rated gap compared with the unloaded ball of the catalogues: "
+              "the gap is larger by this factor; the remainder is due to recess and grooves"});
   all.push_back({"bearing_drag_mean_ratio_with_spring", "II.B.1", 9.0,
                  drag.ratio_film / drag.ratio_spring, nan,
-                 data + "what a gap that opens like a spring leaves of it"});
+                 data + "remaining ratio if the gap depends on the load like a spring"});
   all.push_back(
       {"bearing_unloaded_gap_ratio", "II.B.1", 19.63 / 9.0, drag.ratio_spring, nan,
-       "gap of the unloaded ball over the rated gap by a spring, the paper's 19.63 over 9; "
-       "the film in balance with its supply opens " +
+       "gap of the unloaded ball over the rated gap in the spring model (paper: 19.63/9); "
+       "in the physical model, the gap increases " +
            number(drag.ratio_film) + " times, which leaves " + number(19.63 / drag.ratio_film) +
-           " of the 19.63 to recess and grooves"});
+           " of the 19.63 for recess and grooves"});
 }
 
 void add_air(std::vector<PaperFigure>& all, const PaperInputs& in) {

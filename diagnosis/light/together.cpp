@@ -283,7 +283,7 @@ Diagnosis joined(const Diagnosis& motion, const Diagnosis& light, const std::opt
               : d.effects.empty() ? Verdict::consistent
                                   : Verdict::missing_physics;
   d.confidence = motion.confidence * light.confidence;
-  d.sentence = (is_tilted ? "The platform stands turned against its recorded attitude. Motion: "
+  d.sentence = (is_tilted ? "The platform is rotated relative to its recorded attitude. Motion: "
                           : "Motion: ") +
                word_of(motion.verdict) + ". " + motion.sentence +
                " Light: " + word_of(light.verdict) + ". " + light.sentence;

@@ -51,6 +51,10 @@ namespace {
 // error of 3e-5 of the power.
 constexpr double temperature_step_K = 5.0;
 
+// Fraction of the capacity by which the charge must move away from a limit before an event reports
+// it: a load near the power of the array fills the battery in every other step.
+constexpr double event_hysteresis = 0.01;
+
 double lit(const std::vector<double>& photocurrent_A) {
   return photocurrent_A.empty() ? 0.0 : *std::ranges::max_element(photocurrent_A);
 }
@@ -94,8 +98,8 @@ PowerSupply::PowerSupply(SupplyDesign design, double stored_J)
       temperature_K_(start_K_) {
   for (const double area_m2 : design_.cell_area_m2) area_m2_ += area_m2;
   if (design_.array.heat) plate_.emplace(*design_.array.heat, area_m2_);
-  full_ = design_.battery && stored_J_ >= design_.battery->capacity_J;
-  empty_ = design_.battery && stored_J_ <= 0.0;
+  full_.is_reached = design_.battery && stored_J_ >= design_.battery->capacity_J;
+  empty_.is_reached = design_.battery && stored_J_ <= 0.0;
   if (design_.tracker && design_.max_photocurrent_A > 0.0) {
     const std::vector<double> brightest(design_.cell_area_m2.size(), design_.max_photocurrent_A);
     const CellTables tables =
@@ -196,12 +200,8 @@ void PowerSupply::take(double time_s, double step_s, double potential_W) {
     out_J = -surplus_W * first_s;
     load_J = design_.load_W * first_s + efficiency * potential_W * rest_s;
   }
-  const auto tell = [&](bool& is, bool now, const char* begins, const char* ends) {
-    if (now != is) events_.push_back({now ? begins : ends, time_s + (now ? first_s : 0.0)});
-    is = now;
-  };
-  tell(full_, stored_J_ >= battery.capacity_J, "battery_full", "battery_not_full");
-  tell(empty_, stored_J_ <= 0.0, "battery_empty", "battery_not_empty");
+  add_event(full_, battery.capacity_J - before_J, battery.capacity_J - stored_J_, time_s, first_s);
+  add_event(empty_, before_J, stored_J_, time_s, first_s);
   energies_.array.add(array_J);
   energies_.converter.add((1.0 - efficiency) * array_J);
   energies_.load.add(load_J);
@@ -213,6 +213,20 @@ void PowerSupply::take(double time_s, double step_s, double potential_W) {
   state_.array_W = array_J / step_s;
   state_.load_W = load_J / step_s;
   state_.battery_W = (stored_J_ - before_J) / step_s;
+}
+
+// Adds an event if the battery reaches a limit or leaves it. The distances from the limit are those
+// before and after a step.
+void PowerSupply::add_event(ChargeLimit& limit, double before_J, double after_J, double time_s,
+                            double until_limit_s) {
+  if (before_J <= 0.0) limit.last_s = time_s;
+  if (!limit.is_reached && after_J <= 0.0) {
+    limit.is_reached = true;
+    events_.push_back({limit.reached, time_s + until_limit_s});
+  } else if (limit.is_reached && after_J > event_hysteresis * design_.battery->capacity_J) {
+    limit.is_reached = false;
+    events_.push_back({limit.left, limit.last_s});
+  }
 }
 
 void PowerSupply::warm(double step_s) {
@@ -249,7 +263,8 @@ SupplyClosure PowerSupply::closure() const {
 }
 
 void PowerSupply::keep(Snapshot& snapshot) {
-  snapshot(stored_J_, temperature_K_, full_, empty_, best_per_light_, state_, energies_);
+  snapshot(stored_J_, temperature_K_, best_per_light_, state_, energies_);
+  for (ChargeLimit* limit : {&full_, &empty_}) snapshot(limit->is_reached, limit->last_s);
   if (control_) snapshot(*control_);
   snapshot.each(events_, [&](SupplyEvent& event) { snapshot(event.name, event.time_s); });
 }

@@ -95,6 +95,7 @@ struct SupplyClosure {
   double largest() const { return std::max({cells, bus, battery}); }
 };
 
+// The battery reaches a limit of its charge, or leaves it by more than 1 % of the capacity.
 struct SupplyEvent {
   std::string name;  // "battery_full", "battery_not_full", "battery_empty", "battery_not_empty"
   double time_s = 0.0;
@@ -138,6 +139,15 @@ class PowerSupply {
   const CellTables& tables_at(int index);
   void take(double time_s, double step_s, double potential_W);
   void warm(double step_s);
+  // A full or an empty battery.
+  struct ChargeLimit {
+    const char* reached;  // names of the events
+    const char* left;
+    bool is_reached = false;
+    double last_s = 0.0;  // start of the last step from the limit
+  };
+  void add_event(ChargeLimit& limit, double before_J, double after_J, double time_s,
+                 double until_limit_s);
 
   SupplyDesign design_;
   double area_m2_ = 0.0;
@@ -146,7 +156,8 @@ class PowerSupply {
   double start_K_, temperature_K_;
   std::map<int, CellTables> tables_;  // by temperature, see tables_at()
   std::optional<TrackerControl> control_;
-  bool full_, empty_;
+  ChargeLimit full_{"battery_full", "battery_not_full"};
+  ChargeLimit empty_{"battery_empty", "battery_not_empty"};
   double best_per_light_ = 0.0;  // best power over light on the cells, when last computed
   State state_;
   SupplyEnergies energies_;

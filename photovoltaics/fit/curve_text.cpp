@@ -401,7 +401,7 @@ class Reader {
 
   // Reads a row of the curve `further`, or of the one whose number it states.
   void read_row(const std::vector<std::string_view>& cells, double further) {
-    // For example decimal commas, which would shift the columns after them.
+    // The cause may be decimal commas, which shift the following cells.
     if (header_.separator == ',' && header_.cells == 2 && cells.size() == 4) {
       throw InputError(lines_.where(), "", "a row of 4 cells",
                        "2, as in the header: separate decimal commas by semicolons");

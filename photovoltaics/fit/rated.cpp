@@ -46,7 +46,7 @@ Circuit circuit_of(const VectorXd& x, const Figures& figures, const RatedPoint& 
   const double first_A = cell.photocurrent_A(figures.first_A);
   const double leak_A = shunt_S * series_ohm * point.short_circuit_A;
   double factor = (cell.photocurrent_A(point.short_circuit_A) - leak_A) / (first_A - leak_A);
-  // Happens only for resistances that a fit never results in.
+  // The factor is positive for all resistances near a fit.
   if (!(factor > 0.0) || !std::isfinite(factor)) {
     factor = point.short_circuit_A / figures.first_A;
   }

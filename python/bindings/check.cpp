@@ -47,8 +47,8 @@ void bind_check(py::module_& module) {
             for (const InputError& mistake : report.mistakes) lines.append(mistake.what());
             return lines;
           },
-          "One line each; the first of every table.")
-      .def_readonly("notes", &CheckReport::notes);
+          "Errors, one line each: the first one of every table.")
+      .def_readonly("notes", &CheckReport::notes, "Assumptions of the readers, one line each.");
   module.def("check", &check_of, py::arg("experiment"),
              "Reads the experiment as every command does, without running one.");
   // For the benchmark of calls.

@@ -43,10 +43,11 @@ py::dict parameters_of(const FoundEffect& effect) {
 
 void bind_effect(py::module_& module) {
   py::class_<FoundEffect>(module, "Effect", "An effect that the experiment lacks.")
-      .def_readonly("kind", &FoundEffect::kind)
-      .def_readonly("probability", &FoundEffect::probability)
-      .def_readonly("explanation", &FoundEffect::explanation)
-      .def_readonly("indistinguishable_from", &FoundEffect::indistinguishable_from)
+      .def_readonly("kind", &FoundEffect::kind, "Kind of the effect, such as \"magnetic_dipole\".")
+      .def_readonly("probability", &FoundEffect::probability, "Probability of the effect, 0 to 1.")
+      .def_readonly("explanation", &FoundEffect::explanation, "One sentence of physics.")
+      .def_readonly("indistinguishable_from", &FoundEffect::indistinguishable_from,
+                    "Kinds that explain the recordings equally well.")
       .def_property_readonly("parameters", &parameters_of,
                              "By key, in its unit: {\"value\": array, \"standard_error\": array}.");
 }
@@ -63,14 +64,22 @@ void bind_diagnosis(py::module_& module) {
       .def_property_readonly(
           "verdict", [](const DiagnosisHandle& run) { return name_of(run.diagnosis.verdict); },
           "\"consistent\", \"missing_physics\" or \"unexplained\".")
-      .def_property_readonly("confidence", of(&Diagnosis::confidence))
-      .def_property_readonly("sentence", of(&Diagnosis::sentence))
-      .def_property_readonly("effects", of(&Diagnosis::effects))
-      .def_property_readonly("warnings", of(&Diagnosis::warnings))
-      .def_property_readonly("chi2_per_sample_before", of(&Diagnosis::chi2_per_sample_before))
-      .def_property_readonly("chi2_per_sample_after", of(&Diagnosis::chi2_per_sample_after))
+      .def_property_readonly("confidence", of(&Diagnosis::confidence),
+                             "Probability that the verdict is correct, 0 to 1.")
+      .def_property_readonly("sentence", of(&Diagnosis::sentence),
+                             "The result in one or two sentences.")
+      .def_property_readonly("effects", of(&Diagnosis::effects),
+                             "List of Effect that passed all tests.")
+      .def_property_readonly("warnings", of(&Diagnosis::warnings),
+                             "Notes on the recordings and on the fit, one line each.")
       .def_property_readonly(
-          "provenance", [](const DiagnosisHandle& run) { return provenance_of(run.provenance); })
+          "chi2_per_sample_before", of(&Diagnosis::chi2_per_sample_before),
+          "χ² per sample of the fitted data for the nominal model; 1: noise only.")
+      .def_property_readonly("chi2_per_sample_after", of(&Diagnosis::chi2_per_sample_after),
+                             "χ² per sample of the fitted data with the effects.")
+      .def_property_readonly(
+          "provenance", [](const DiagnosisHandle& run) { return provenance_of(run.provenance); },
+          "Version, git hash, seed and the hashes of all inputs.")
       .def_property_readonly("json", &DiagnosisHandle::json, "The content of diagnosis.json.")
       .def(
           "improved",

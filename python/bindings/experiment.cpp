@@ -136,11 +136,11 @@ void bind_experiment(py::module_& module) {
       .def(py::init(&make), py::arg("source"), py::kw_only(), py::arg("keys") = py::dict(),
            py::arg("folder") = py::none(), py::arg("name") = "experiment")
       .def("with_keys", &changed, py::arg("keys"),
-           "The same with other values: {\"attitude.tilt_deg\": 30, \"source[0].power_W\": 10}, as "
+           "A copy with changed keys: {\"attitude.tilt_deg\": 30, \"source[0].power_W\": 10}, as "
            "the program's --set.")
       .def_property_readonly(
           "path", [](const ExperimentHandle& self) { return self.options.experiment.string(); },
-          "Its file, or what errors call the dict.")
+          "Path of the file; for a dict, the name used in error messages.")
       .def_property_readonly(
           "text", [](const ExperimentHandle& self) { return *self.options.text; },
           "TOML as written, without the changes of keys.")

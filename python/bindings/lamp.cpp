@@ -241,8 +241,8 @@ void bind_lamp(py::module_& module) {
            py::arg("wavelength_nm"), py::arg("position_m"), py::arg("direction") = py::none(),
            py::arg("aim_m") = py::none(), py::arg("spectral_fwhm_nm") = 0.0,
            py::arg("name") = "lamp")
-      .def_readonly("name", &LampHandle::name)
-      .def_readonly("power_W", &LampHandle::power_W)
+      .def_readonly("name", &LampHandle::name, "Name of the lamp in results and errors.")
+      .def_readonly("power_W", &LampHandle::power_W, "Emitted power [W].")
       .def("__repr__", [](const LampHandle& lamp) {
         return "Lamp(\"" + lamp.name + "\", " + std::string(py::str(py::float_(lamp.power_W))) +
                " W)";

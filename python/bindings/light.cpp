@@ -76,15 +76,22 @@ void bind_flux_map(py::module_& module) {
       module, "FluxMap",
       "Irradiance of each bin of a surface: arrays of shape (bins along v, bins along "
       "u), both rising; NaN where there is no surface.")
-      .def_property_readonly("irradiance_W_m2", layer(&FluxMap::incident, &Estimate::value))
+      .def_property_readonly("irradiance_W_m2", layer(&FluxMap::incident, &Estimate::value),
+                             "Mean incident irradiance of each bin [W/m²].")
       .def_property_readonly("irradiance_standard_error_W_m2",
-                             layer(&FluxMap::incident, &Estimate::standard_error))
-      .def_property_readonly("absorbed_W_m2", layer(&FluxMap::absorbed, &Estimate::value))
+                             layer(&FluxMap::incident, &Estimate::standard_error),
+                             "Standard error of irradiance_W_m2 [W/m²].")
+      .def_property_readonly("absorbed_W_m2", layer(&FluxMap::absorbed, &Estimate::value),
+                             "Mean absorbed power per area of each bin [W/m²].")
       .def_property_readonly("absorbed_standard_error_W_m2",
-                             layer(&FluxMap::absorbed, &Estimate::standard_error))
-      .def_property_readonly("power_W", [](const FluxMap& map) { return map.incident.power_W; })
-      .def_property_readonly("absorbed_power_W",
-                             [](const FluxMap& map) { return map.absorbed.power_W; })
+                             layer(&FluxMap::absorbed, &Estimate::standard_error),
+                             "Standard error of absorbed_W_m2 [W/m²].")
+      .def_property_readonly(
+          "power_W", [](const FluxMap& map) { return map.incident.power_W; },
+          "Incident power on the surface [W], an Estimate.")
+      .def_property_readonly(
+          "absorbed_power_W", [](const FluxMap& map) { return map.absorbed.power_W; },
+          "Absorbed power of the surface [W], an Estimate.")
       .def_property_readonly(
           "area_m2",
           [](const py::object& self) {
@@ -118,20 +125,26 @@ void bind_runs(py::module_& module) {
   auto trace = py::class_<LightHandle>(module, "Trace",
                                        "Power balance, irradiance, force and torque of a trace.");
   add_result(trace, "trace");
-  trace.def_property_readonly("flux_maps", &flux_maps_of, "A FluxMap for every such receiver.")
+  trace
+      .def_property_readonly("flux_maps", &flux_maps_of,
+                             "The FluxMap of every receiver of kind flux_map, by name.")
       .def_property_readonly(
-          "force_body_N", [](const LightHandle& self) { return copy_of(self.wrench.mean.force_N); })
+          "force_body_N", [](const LightHandle& self) { return copy_of(self.wrench.mean.force_N); },
+          "Radiation force, body axes [N], shape (3,); a copy.")
       .def_property_readonly(
           "force_standard_error_N",
-          [](const LightHandle& self) { return copy_of(self.wrench.force_error_N()); })
+          [](const LightHandle& self) { return copy_of(self.wrench.force_error_N()); },
+          "Standard error of force_body_N [N], shape (3,); a copy.")
       .def_property_readonly(
           "torque_body_N_m",
           [](const LightHandle& self) { return copy_of(self.wrench.mean.torque_N_m); },
-          "About the centre of rotation.")
+          "Torque about the centre of rotation, body axes [N m].")
       .def_property_readonly(
           "torque_standard_error_N_m",
-          [](const LightHandle& self) { return copy_of(self.wrench.torque_error_N_m()); })
-      .def_property_readonly("rays", [](const LightHandle& self) { return self.light.rays; })
+          [](const LightHandle& self) { return copy_of(self.wrench.torque_error_N_m()); },
+          "Standard error of torque_body_N_m [N m], shape (3,); a copy.")
+      .def_property_readonly(
+          "rays", [](const LightHandle& self) { return self.light.rays; }, "Number of traced rays.")
       .def(
           "write_page",
           [](const LightHandle& self, const std::filesystem::path& path) {
@@ -147,19 +160,27 @@ void bind_runs(py::module_& module) {
                              "Table voltage_V, current_A, power_W from short to open circuit.")
       .def_property_readonly("maxima", table_view<PowerHandle>("maxima"),
                              "Table of all local maxima of the power, by rising voltage.")
-      .def_property_readonly("power_W", [](const PowerHandle& self) { return self.power.power_W; })
-      .def_property_readonly("voltage_V",
-                             [](const PowerHandle& self) { return self.power.voltage_V; })
-      .def_property_readonly("current_A",
-                             [](const PowerHandle& self) { return self.power.current_A; })
-      .def_property_readonly("cell_light_W",
-                             [](const py::object& self) {
-                               return cells_view(
-                                   self, self.cast<const PowerHandle&>().power.cell_light_W);
-                             })
-      .def_property_readonly("cell_voltage_V", [](const py::object& self) {
-        return cells_view(self, self.cast<const PowerHandle&>().power.cells.voltages_V);
-      });
+      .def_property_readonly(
+          "power_W", [](const PowerHandle& self) { return self.power.power_W; },
+          "Electric power at the maximum power point [W], an Estimate.")
+      .def_property_readonly(
+          "voltage_V", [](const PowerHandle& self) { return self.power.voltage_V; },
+          "Voltage of the array at the maximum power point [V], an Estimate.")
+      .def_property_readonly(
+          "current_A", [](const PowerHandle& self) { return self.power.current_A; },
+          "Current of the array at the maximum power point [A], an Estimate.")
+      .def_property_readonly(
+          "cell_light_W",
+          [](const py::object& self) {
+            return cells_view(self, self.cast<const PowerHandle&>().power.cell_light_W);
+          },
+          "Light on each cell [W], shape (rows, columns).")
+      .def_property_readonly(
+          "cell_voltage_V",
+          [](const py::object& self) {
+            return cells_view(self, self.cast<const PowerHandle&>().power.cells.voltages_V);
+          },
+          "Voltage of each cell at the maximum power point [V], shape (rows, columns).");
 }
 
 }  // namespace

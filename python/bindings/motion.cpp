@@ -101,15 +101,16 @@ void bind_motion(py::module_& module) {
           [](const py::object& self) {
             return state_view(self, &motion_of(self).states.front().time_s, 1);
           },
-          "Of the true states below.")
+          "Times of the true states [s], shape (n,).")
       .def_property_readonly(
           "attitude_wxyz", &attitude_of,
           "Quaternions (w, x, y, z) that rotate body vectors into the lab; a copy.")
-      .def_property_readonly("rate_body_rad_s",
-                             [](const py::object& self) {
-                               return state_view(
-                                   self, motion_of(self).states.front().rate_body_rad_s.data(), 3);
-                             })
+      .def_property_readonly(
+          "rate_body_rad_s",
+          [](const py::object& self) {
+            return state_view(self, motion_of(self).states.front().rate_body_rad_s.data(), 3);
+          },
+          "Rates with respect to the lab, body axes [rad/s], shape (n, 3).")
       .def(
           "write_page",
           [](const MotionHandle& self, const std::filesystem::path& path) {
@@ -118,9 +119,12 @@ void bind_motion(py::module_& module) {
             });
           },
           py::arg("path"), "Writes the motion as one HTML page; returns its path.")
-      .def_property_readonly("charge_drawn_C", [](const py::object& self) {
-        return state_view(self, &motion_of(self).states.front().charge_drawn_C, 1);
-      });
+      .def_property_readonly(
+          "charge_drawn_C",
+          [](const py::object& self) {
+            return state_view(self, &motion_of(self).states.front().charge_drawn_C, 1);
+          },
+          "Charge drawn from the battery [C], shape (n,).");
   module.def(
       "propagate", &propagate_motion, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,
       py::arg("seed") = py::none(), py::arg("torques") = py::dict(),

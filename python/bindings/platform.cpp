@@ -26,20 +26,28 @@ BalanceOutcome balance_of(const ExperimentHandle& experiment,
 
 void bind_budget(py::module_& module) {
   py::class_<BudgetEntry>(module, "BudgetEntry", "A disturbance at the state of a budget.")
-      .def_readonly("kind", &BudgetEntry::kind)
-      .def_readonly("name", &BudgetEntry::name)
+      .def_readonly("kind", &BudgetEntry::kind, "Kind of the disturbance, as in the experiment.")
+      .def_readonly("name", &BudgetEntry::name, "Name of the disturbance; unique in the budget.")
       .def_property_readonly(
           "torque_body_N_m",
-          [](const BudgetEntry& entry) { return copy_of(entry.torque_body_N_m); })
-      .def_readonly("angle_after_minute_rad", &BudgetEntry::angle_after_minute_rad)
-      .def_readonly("angle_after_hour_rad", &BudgetEntry::angle_after_hour_rad)
-      .def_readonly("angle_after_day_rad", &BudgetEntry::angle_after_day_rad);
+          [](const BudgetEntry& entry) { return copy_of(entry.torque_body_N_m); },
+          "Largest torque within one second, about the centre of rotation, body axes [N m], shape "
+          "(3,).")
+      .def_readonly("angle_after_minute_rad", &BudgetEntry::angle_after_minute_rad,
+                    "Angle of rotation from rest in 60 s under the mean torque alone [rad].")
+      .def_readonly("angle_after_hour_rad", &BudgetEntry::angle_after_hour_rad,
+                    "The angle after 3600 s [rad].")
+      .def_readonly("angle_after_day_rad", &BudgetEntry::angle_after_day_rad,
+                    "The angle after 86400 s [rad].");
   auto type = py::class_<BudgetRun>(module, "Budget",
                                     "Every disturbance torque at one state, largest first.");
   add_result(type, "budget");
-  type.def_property_readonly("entries", [](const BudgetRun& run) { return run.budget.entries; });
+  type.def_property_readonly(
+      "entries", [](const BudgetRun& run) { return run.budget.entries; },
+      "List of BudgetEntry, largest torque first.");
   module.def("budget", &budget_of, py::arg("experiment"),
-             "Every disturbance torque at the state of [budget], ranked, beside the paper's.");
+             "Every disturbance torque at the state of [budget], largest first, with the published "
+             "figures.");
 }
 
 }  // namespace

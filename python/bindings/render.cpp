@@ -31,9 +31,11 @@ void bind_render(py::module_& module) {
       .def_property_readonly("pixels", &pixels_of,
                              "Red, green, blue (rows from the top, columns, 3), 0 to 255, sRGB: "
                              "for matplotlib's imshow.")
-      .def_property_readonly("title", [](const RenderRun& run) { return run.title; })
-      .def_property_readonly("provenance",
-                             [](const RenderRun& run) { return provenance_of(run.provenance); })
+      .def_property_readonly(
+          "title", [](const RenderRun& run) { return run.title; }, "Title of the picture.")
+      .def_property_readonly(
+          "provenance", [](const RenderRun& run) { return provenance_of(run.provenance); },
+          "Version, git hash, seed and the hashes of all inputs.")
       .def(
           "write",
           [](const RenderRun& self, const std::filesystem::path& folder) {
@@ -42,7 +44,7 @@ void bind_render(py::module_& module) {
           },
           py::arg("folder"), "Writes render.png as the program does; gives its path.");
   def_traced(module, "render", &run_render,
-             "Traces the experiment and looks at it from its [camera].");
+             "Traces the experiment and returns a picture of the scene, seen from [camera].");
 }
 
 }  // namespace photorque::python

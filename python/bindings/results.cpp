@@ -37,8 +37,8 @@ py::object column_called(const py::object& self, const std::string& name) {
 void bind_table(py::module_& module) {
   py::class_<Table>(module, "Table",
                     "Columns of equal length, by name; the unit is the name's end.")
-      .def_readonly("name", &Table::name)
-      .def_readonly("title", &Table::title)
+      .def_readonly("name", &Table::name, "Name of the table; that of its file without extension.")
+      .def_readonly("title", &Table::title, "Title of the table.")
       .def("keys", [](const py::object& self) { return py::list(columns_of(self)); })
       .def("to_dict", &columns_of, "All columns as a dict of arrays.")
       .def("__getitem__", &column_called, py::arg("column"))
@@ -55,7 +55,7 @@ void bind_table(py::module_& module) {
           [](const py::object& self) {
             return py::module_::import("pandas").attr("DataFrame")(columns_of(self));
           },
-          "As a pandas DataFrame.")
+          "The table as a pandas DataFrame.")
       .def("__repr__", [](const Table& table) {
         return "Table(\"" + table.name + "\", " + std::to_string(table.columns.size()) +
                " columns)";
@@ -69,11 +69,11 @@ py::array map_view(const py::object& self, std::vector<double> Map::*numbers) {
 
 void bind_map(py::module_& module) {
   py::class_<Map>(module, "Map", "A field over a regular grid: averages over its bins.")
-      .def_readonly("name", &Map::name)
-      .def_readonly("title", &Map::title)
-      .def_readonly("unit", &Map::unit)
-      .def_readonly("x_label", &Map::x_label)
-      .def_readonly("y_label", &Map::y_label)
+      .def_readonly("name", &Map::name, "Name of the map; that of its files without extension.")
+      .def_readonly("title", &Map::title, "Title of the picture.")
+      .def_readonly("unit", &Map::unit, "Unit of the values.")
+      .def_readonly("x_label", &Map::x_label, "Label of the x axis with its unit.")
+      .def_readonly("y_label", &Map::y_label, "Label of the y axis with its unit.")
       .def_property_readonly(
           "value", [](const py::object& self) { return map_view(self, &Map::value); },
           "Row by row, y and x rising.")
@@ -83,15 +83,17 @@ void bind_map(py::module_& module) {
             if (self.cast<const Map&>().standard_error.empty()) return py::none();
             return map_view(self, &Map::standard_error);
           },
-          "Of every value; None where they are exact.")
+          "Standard error of every value; None if the values are exact.")
       .def_property_readonly(
           "extent",
           [](const Map& map) {
             return py::make_tuple(map.x_low, map.x_high, map.y_low, map.y_high);
           },
           "Outer edges (x, x, y, y), for matplotlib's imshow with origin=\"lower\".")
-      .def_readonly("is_signed", &Map::signed_values, "Positive and negative: centred on zero.")
-      .def_readonly("has_equal_scale", &Map::equal_scale, "x and y are lengths of one unit.")
+      .def_readonly("is_signed", &Map::signed_values,
+                    "True if values may be negative; the colour scale is then centred on zero.")
+      .def_readonly("has_equal_scale", &Map::equal_scale,
+                    "True if x and y have the same unit of length.")
       .def(
           "plot",
           [](const py::object& self, const py::object& axes) {
@@ -117,13 +119,15 @@ void bind_plot(py::module_& module) {
   using Curve = Plot::Curve;
   using Panel = Plot::Panel;
   py::class_<Curve>(module, "Curve", "One curve of a plot.")
-      .def_readonly("label", &Curve::label)
+      .def_readonly("label", &Curve::label, "Name of the curve in the legend.")
       .def_property_readonly("style", &style_of,
                              "\"line\", \"dashed\", \"points\", \"dots\" or \"bars\".")
       .def_property_readonly(
-          "x", [](const py::object& self) { return view(self.cast<const Curve&>().x, self); })
+          "x", [](const py::object& self) { return view(self.cast<const Curve&>().x, self); },
+          "Values of x.")
       .def_property_readonly(
-          "y", [](const py::object& self) { return view(self.cast<const Curve&>().y, self); })
+          "y", [](const py::object& self) { return view(self.cast<const Curve&>().y, self); },
+          "Values of y; NaN: a gap.")
       .def_property_readonly(
           "y_error",
           [](const py::object& self) -> py::object {
@@ -131,18 +135,19 @@ void bind_plot(py::module_& module) {
             if (curve.y_error.empty()) return py::none();
             return view(curve.y_error, self);
           },
-          "One standard error of every y; None where they are exact.");
+          "Standard error of every y; None if the values are exact.");
   py::class_<Panel>(module, "Panel", "One pair of axes of a plot.")
-      .def_readonly("y_label", &Panel::y_label)
-      .def_readonly("y_log", &Panel::y_log)
-      .def_readonly("curves", &Panel::curves)
-      .def_readonly("levels", &Panel::levels, "Of dotted horizontal lines.");
+      .def_readonly("y_label", &Panel::y_label, "Label of the y axis with its unit.")
+      .def_readonly("y_log", &Panel::y_log, "True if the y axis is logarithmic.")
+      .def_readonly("curves", &Panel::curves, "List of Curve.")
+      .def_readonly("levels", &Panel::levels,
+                    "Values of y at which dotted horizontal lines are drawn.");
   py::class_<Plot>(module, "Plot", "Curves in axes that share x.")
-      .def_readonly("name", &Plot::name)
-      .def_readonly("title", &Plot::title)
-      .def_readonly("x_label", &Plot::x_label)
-      .def_readonly("x_log", &Plot::x_log)
-      .def_property_readonly("panels", &panels_of, "The axes, from above.")
+      .def_readonly("name", &Plot::name, "Name of the plot; that of its files without extension.")
+      .def_readonly("title", &Plot::title, "Title of the plot.")
+      .def_readonly("x_label", &Plot::x_label, "Label of the x axis with its unit.")
+      .def_readonly("x_log", &Plot::x_log, "True if the x axis is logarithmic.")
+      .def_property_readonly("panels", &panels_of, "The axes, from top to bottom.")
       .def(
           "plot",
           [](const py::object& self, const py::object& axes) {
@@ -155,8 +160,9 @@ void bind_plot(py::module_& module) {
 
 void bind_results(py::module_& module) {
   py::class_<Estimate>(module, "Estimate", "A number and its standard error (0: exact).")
-      .def_readonly("value", &Estimate::value)
-      .def_readonly("standard_error", &Estimate::standard_error)
+      .def_readonly("value", &Estimate::value, "The number.")
+      .def_readonly("standard_error", &Estimate::standard_error,
+                    "Its standard error; 0 if it is exact, infinite if it is undetermined.")
       .def("__float__", [](const Estimate& estimate) { return estimate.value; })
       .def("__repr__", [](const Estimate& estimate) {
         return "Estimate(" + std::string(trimmed(show(estimate, ""))) + ")";

@@ -87,7 +87,8 @@ void bind_tracking(py::module_& module) {
             return series_of(chosen_of(run, recording).smoothed);
           },
           py::arg("recording") = 0,
-          "By all readings: t_s (n,), attitude_wxyz (n, 4), rate_body_rad_s (n, 3), and their "
+          "Attitude and rate from all readings (smoother): t_s (n,), attitude_wxyz (n, 4), "
+          "rate_body_rad_s (n, 3), and their "
           "standard "
           "deviations about body axes, attitude_sigma_rad and rate_sigma_rad_s (n, 3); copies.")
       .def(
@@ -95,7 +96,8 @@ void bind_tracking(py::module_& module) {
           [](const EstimateRun& run, size_t recording) {
             return series_of(chosen_of(run, recording).filtered);
           },
-          py::arg("recording") = 0, "The same by the readings until then.")
+          py::arg("recording") = 0,
+          "Attitude and rate from the readings up to each time (filter); keys as in smoothed().")
       .def_property_readonly(
           "unseen",
           [](const EstimateRun& run) {

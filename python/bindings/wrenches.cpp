@@ -73,20 +73,27 @@ void bind_wrenches(py::module_& module) {
           },
           "\"tilt_heading\": polar is the tilt, around the heading; \"azimuth_elevation\" of the "
           "direction towards the light: polar is the elevation, around the azimuth.")
-      .def_property_readonly("polar_rad",
-                             [](const py::object& self) {
-                               return view(self.cast<const TorqueMapHandle&>().wrenches.polar_rad,
-                                           self);
-                             })
-      .def_property_readonly("around_rad",
-                             [](const py::object& self) {
-                               return view(self.cast<const TorqueMapHandle&>().wrenches.around_rad,
-                                           self);
-                             })
-      .def_property_readonly("force_body_N", node_view(&WrenchTable::force_body_N))
-      .def_property_readonly("force_standard_error_N", node_view(&WrenchTable::force_error_N))
-      .def_property_readonly("torque_body_N_m", node_view(&WrenchTable::torque_body_N_m))
-      .def_property_readonly("torque_standard_error_N_m", node_view(&WrenchTable::torque_error_N_m))
+      .def_property_readonly(
+          "polar_rad",
+          [](const py::object& self) {
+            return view(self.cast<const TorqueMapHandle&>().wrenches.polar_rad, self);
+          },
+          "Polar angles of the nodes [rad]: tilt or elevation; see angles.")
+      .def_property_readonly(
+          "around_rad",
+          [](const py::object& self) {
+            return view(self.cast<const TorqueMapHandle&>().wrenches.around_rad, self);
+          },
+          "Azimuthal angles of the nodes [rad]: heading or azimuth; see angles.")
+      .def_property_readonly("force_body_N", node_view(&WrenchTable::force_body_N),
+                             "Force at each node, body axes [N], shape (around, polar, 3).")
+      .def_property_readonly("force_standard_error_N", node_view(&WrenchTable::force_error_N),
+                             "Standard error of force_body_N [N].")
+      .def_property_readonly("torque_body_N_m", node_view(&WrenchTable::torque_body_N_m),
+                             "Torque about the centre of rotation at each node, body axes [N m], "
+                             "shape (around, polar, 3).")
+      .def_property_readonly("torque_standard_error_N_m", node_view(&WrenchTable::torque_error_N_m),
+                             "Standard error of torque_body_N_m [N m].")
       .def("at", &wrench_between, py::arg("polar_rad"), py::arg("around_rad"),
            "(force, torque) between the nodes, bilinear. NumericalError outside the grid.")
       .def("write_page", &write_page, py::arg("path"),

@@ -69,8 +69,9 @@ inline constexpr NumberKey cutoff("cutoff", {0.0, 1.0, false, true},
 inline constexpr ChoiceKey direct(
     "direct",
     {{"auto",
-      "as `\"gather\"`, for bodies in sunlight only; but as `\"rays\"`, with a note, if quadrature "
-      "would take seconds and more than four times as long as the rays (thousands of lamps)"},
+      "quadrature for flux and torque maps, and for force and torque on bodies in sunlight; rays, "
+      "with a note, if quadrature takes seconds and more than four times as long (thousands of "
+      "lamps)"},
      {"gather",
       "quadrature over the lamps, with shadow rays for surfaces that may be shaded: for flat flux "
       "maps, flat torque maps of plain surfaces, and force and torque on bodies"},
@@ -124,7 +125,8 @@ inline constexpr IntegerKey rays(
     "rays", 1, most_rays,
     "number of rays per attitude or direction. Plain surfaces in sunlight are computed by "
     "quadrature, unless `trace.direct` is \"rays\" or `trace.max_depth` is below its default. Each "
-    "of the two estimates of their scattered light then uses 64 times as many rays, at most 2^24; "
+    "of the two independent estimates of the scattered light then uses 64 times as many rays, at "
+    "most 2^24; "
     "`trace.cutoff` has no effect on them",
     {.usually = "`trace.rays`"});
 inline constexpr NumberKey flow_speed("speed_m_s", Range::positive(),

@@ -175,8 +175,8 @@ SettingsNode& follow(SettingsNode& node, const Step& step, const std::string& ke
   if (!step.name.empty()) {
     auto* table = std::get_if<SettingsNode::Table>(&node.value);
     if (table == nullptr) {
-      throw InputError(command_line, key, "that " + step.name + " lies in " + describe(node),
-                       "a table there");
+      throw InputError(command_line, key, step.name + " in " + describe(node),
+                       "a table, or the index of one, as in source[0]");
     }
     const auto [item, is_new] = table->try_emplace(step.name);
     if (is_new) item->second.where = command_line;

@@ -413,6 +413,18 @@ TEST(Words, SentencesOfDocumentsHaveAtMost35Words) {
   EXPECT_GT(sentences, 1000u);
 }
 
+TEST(Words, EntriesOfTheChangelogHaveAtMost160Characters) {
+  static const std::regex entry(R"(\n- [^\n]*(\n  [^\n]+)*)"), blanks(R"(\s+)");
+  const std::string text = text_of(root / "CHANGELOG.md");
+  size_t entries = 0;
+  for (std::sregex_iterator it(text.begin(), text.end(), entry), last; it != last; ++it) {
+    const std::string line = std::regex_replace(it->str().substr(1), blanks, " ");
+    EXPECT_LE(std::ranges::count_if(line, [](char c) { return (c & 0xC0) != 0x80; }), 160) << line;
+    ++entries;
+  }
+  EXPECT_GT(entries, 50u);
+}
+
 TEST(Words, LinesOfDocumentsHaveAtMost140Characters) {
   std::vector<fs::path> files = documents();
   files.push_back(root / "CHANGELOG.md");

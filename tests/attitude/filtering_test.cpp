@@ -354,7 +354,7 @@ TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
   }
   EXPECT_GT(e.sigma[2], 0.009);
   EXPECT_THAT(result.unseen,
-              testing::Contains("gyro_scale.scale[2] does not show in the readings"));
+              testing::Contains("gyro_scale.scale[2] is not determined by the readings"));
   EXPECT_THAT(result.unseen,
               testing::Not(testing::Contains(testing::StartsWith("gyro_scale.scale[0]"))));
 }

@@ -79,6 +79,22 @@ TEST(PowerSupply, ReportsTheTimeOfLeavingFullAndEmpty) {
                                              "battery_not_empty", "battery_full"}));
 }
 
+// Flickering light empties the battery by less than 1 % and fills it again.
+TEST(PowerSupply, ABatteryThatStaysNearlyFullHasNoFurtherEvents) {
+  SupplyDesign design = four_cells();
+  design.battery = Battery{.capacity_J = 1000.0, .discharge_efficiency = 1.0};
+  design.load_W = 0.5 * best_W(design);
+  ASSERT_LT(design.load_W, 9.0);
+  PowerSupply supply(design, 1000.0);
+  for (int k = 0; k < 500; ++k) supply.step(k, 1.0, even(k % 5 == 0 ? 0.0 : cell_A));
+  EXPECT_TRUE(supply.events().empty());
+  EXPECT_EQ(supply.stored_J(), 1000.0);
+  for (int k = 0; k < 10; ++k) supply.step(600.0 + 2.0 * k, 2.0, even(0.0));
+  ASSERT_EQ(supply.events().size(), 1u);
+  EXPECT_EQ(supply.events()[0].name, "battery_not_full");
+  EXPECT_EQ(supply.events()[0].time_s, 600.0);
+}
+
 // One face with constant convection only: α E − P − h A (T − T_air) = 0 in the steady state, and
 // heating without power follows an exponential.
 TEST(PowerSupply, CellsWarmByTheirEquation) {

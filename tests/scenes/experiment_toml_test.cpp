@@ -100,7 +100,8 @@ TEST(Override, ThatMakesNoSenseIsRefused) {
   }
   EXPECT_EQ(error_of(text, "t[1].y=2"),
             "--set: t[1].y: found index 1, expected index 0, the only one");
-  EXPECT_EQ(error_of(text, "x.y=2"), "--set: x.y: found that y lies in 1, expected a table there");
+  EXPECT_EQ(error_of(text, "x.y=2"),
+            "--set: x.y: found y in 1, expected a table, or the index of one, as in source[0]");
   EXPECT_EQ(error_of(text, "x[0]=2"), "--set: x[0]: found index 0, expected no index: this is 1");
   for (const char* assignment : {"x=", "x=two words", "x=[1", "x=1\ny=2", "x={", "x=\"a"}) {
     EXPECT_NE(error_of(text, assignment), "") << assignment;

@@ -340,11 +340,11 @@ TEST_F(ArrayCommand, TargetUsesPublishedFigures) {
                              " --set trace.rays=65536 --set 'array.target={}' --verbose --out " +
                              at("out");
   const Outcome paper = succeed(common);
-  EXPECT_THAT(paper.out, HasSubstr("What 30 W and 38 % require"));
+  EXPECT_THAT(paper.out, HasSubstr("Requirements of 30 W and 38 %"));
   EXPECT_THAT(paper.out, HasSubstr("the published 23 W need a further 0.88527"));
   const Outcome other =
       succeed(common + " --set published[2].value=20 --set published[3].value=10");
-  EXPECT_THAT(other.out, HasSubstr("What 20 W and 38 % require"));
+  EXPECT_THAT(other.out, HasSubstr("Requirements of 20 W and 38 %"));
   // 10 W over 20 W cos 30°.
   EXPECT_THAT(other.out, HasSubstr("the published 10 W need a further 0.57735"));
 }

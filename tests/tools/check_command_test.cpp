@@ -169,7 +169,9 @@ TEST_F(CheckCommand, NewWritesAnExperimentThatRuns) {
   EXPECT_THAT(file_text(at("lab/lit.toml")), HasSubstr("array_board/solar_array"));
   succeed("trace " + at("lab/lit.toml") + " --out " + at("out"));
   const std::string free = at("lab/free.toml");
-  succeed("new " + free);
+  const auto json = nlohmann::json::parse(succeed("new " + free + " --json").out);
+  EXPECT_EQ(json["commands"][0]["name"], "propagate");
+  EXPECT_TRUE(json["mistakes"].empty());
   succeed("propagate " + free + " --out " + at("out2"));
   // Existing files stay.
   const std::string before = file_text(free);

@@ -100,7 +100,7 @@ TEST_F(CommandLine, DirectLightIsTheSameGatheredAndByRays) {
   const Outcome got =
       succeed("trace " + nominal_file +
               " --set attitude.tilt_deg=30 --set trace.rays=262144 --verbose --out " + at("o"));
-  EXPECT_THAT(got.out, HasSubstr("gathered and by rays differ by"));
+  EXPECT_THAT(got.out, HasSubstr("quadrature and rays differ by"));
   const std::string summary = file_text(folder_ / "o" / "summary.json");
   const double gathered = value_in(summary, "direct_on_solar_array_W", "\"value\"");
   const double rays = value_in(summary, "direct_by_rays_on_solar_array_W", "\"value\"");
@@ -165,6 +165,7 @@ TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
        "--sett: found an unknown option, expected a known one, perhaps --set"},
       {base + nominal_file, "nominal.toml, expected nothing more"},
       {base + "--format jpg", "--format: found \"jpg\", expected one of exr"},
+      {"schema --key source.power_W --json", "--json: found with --key"},
       {"schema --key source.powr_W",
        "found \"source.powr_W\", expected a key with its table, perhaps "
        "source.power_W"},

@@ -142,7 +142,7 @@ TEST_F(CoupledCommand, ATableThatMissesItsToleranceIsAWarning) {
     return reported;
   };
   EXPECT_THAT(warned("--set light.tolerance=1e-6 --set light.max_traces=100"),
-              HasSubstr("misses light.tolerance = 1e-06 of the largest: torque by up to "));
+              HasSubstr("exceed light.tolerance = 1e-06 of the largest: torque by up to "));
   EXPECT_EQ(warned("--set light.tolerance=0.05"), "[]");
 }
 

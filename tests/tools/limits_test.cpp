@@ -121,6 +121,9 @@ TEST_F(Limits, CoincidentFacesAreNamed) {
 TEST_F(Limits, SelftestPasses) {
   const Outcome got = succeed("selftest");
   EXPECT_THAT(got.out, HasSubstr(" checks, 0 wrong"));
+  const auto json = nlohmann::json::parse(succeed("selftest --json").out);
+  EXPECT_EQ(json["wrong"], 0);
+  EXPECT_EQ(static_cast<size_t>(std::ranges::count(got.out, '\n')), json["checks"].size() + 1);
 }
 
 }  // namespace

@@ -113,10 +113,11 @@ class SunlitDirections final : public LightDirections {
     const double sigmas =
         std::sqrt(squares / (noises + stated_N_m * stated_N_m + rounding_N_m * rounding_N_m));
     if (sigmas > loud) {
-      warnings.push_back("torques by quadrature and by rays differ by " + show(sigmas) +
-                         " standard errors (rms) in " + std::to_string(fresh) +
-                         " fresh directions: parts too small for the rays, or light through gaps; "
-                         "compare with trace.direct = \"rays\"");
+      warnings.push_back(
+          "torques by quadrature and by rays differ by " + show(sigmas) +
+          " standard errors (rms) in " + std::to_string(fresh) +
+          " additional directions. Causes: parts too small for the rays, light through gaps; "
+          "compare with trace.direct = \"rays\"");
     }
   }
 

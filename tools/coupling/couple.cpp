@@ -53,8 +53,9 @@ std::optional<CheckpointFile::Kept> CheckpointFile::read(const std::string& iden
   if (!std::filesystem::exists(path_, none)) return {};
   std::string all = read_file(path_, largest_checkpoint_bytes);
   const auto refuse = [&](const char* found) {
-    throw InputError({path_.string()}, "", found,
-                     "a checkpoint of this run (another --out, or none there, starts again)");
+    throw InputError(
+        {path_.string()}, "", found,
+        "a checkpoint of this run. Use another --out, or remove the file to start again");
   };
   size_t at = 0;
   if (next_line(all, at) != checkpoint_format) refuse("another file");
@@ -99,7 +100,7 @@ void require_light_once(const ExperimentFile& file) {
     }
     if (kind == "power_balance" && has_array) {
       throw disturbance.error("kind", "\"power_balance\" beside [array]",
-                              "one of them: load and battery of the array stand in [array.day] "
+                              "one of them: [array.day] states load and battery of the array "
                               "([light] mode = \"off\" leaves the array out)");
     }
   }
@@ -233,7 +234,7 @@ std::vector<std::string> missed_tolerance(const RotationTable& table, double tol
            readable_number(100.0 * error.max[g] / error.scale[g], 3) + " %";
   }
   if (off.empty()) return {};
-  return {"the table of light over attitude misses light.tolerance = " + shortest(tolerance) +
+  return {"the errors of the table of light exceed light.tolerance = " + shortest(tolerance) +
           " of the largest: " + off + "; increase light.max_traces or light.rays"};
 }
 
@@ -370,8 +371,9 @@ CoupledResult propagate_in_light(const RunOptions& options, const Console& conso
       if (is_live || tilt_now_rad >= pi) throw;
       console.done();
     }
-    console.line("the motion passed the table's " + show(tilt_now_rad / degree_rad) +
-                 " deg: again with a wider table");
+    console.line("the motion left the range of the table of light, " +
+                 show(tilt_now_rad / degree_rad) +
+                 " deg of tilt: the run is repeated with a wider table");
     tilt_now_rad = std::min(tilt_now_rad < limit_rad ? limit_rad : pi, 2.0 * tilt_now_rad);
   }
   if (result.beside) add_events(result.motion, *result.beside);

@@ -129,8 +129,9 @@ class DoneDirections {
     Snapshot snapshot(kept->state);
     keep(snapshot);
     if (!snapshot.is_whole()) {
-      throw InputError({file_->path().string()}, "", "a damaged checkpoint",
-                       "a checkpoint of this run (another --out, or none there, starts again)");
+      throw InputError(
+          {file_->path().string()}, "", "a damaged checkpoint",
+          "a checkpoint of this run. Use another --out, or remove the file to start again");
     }
     console_.line("goes on from " + file_->path().string() + ": " + std::to_string(all_.size()) +
                   " directions are done");

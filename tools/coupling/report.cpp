@@ -207,8 +207,8 @@ void print_power(const Console& console, const CoupledRun& run) {
     const ContinuationError& error = run.continuation();
     console.heading("Light, traced at every exchange");
     console.line("  " + std::to_string(run.traces()) +
-                 " attitudes; the torque continued from the "
-                 "last three met the next within " +
+                 " attitudes; the torque extrapolated from the "
+                 "last three differed from the next by at most " +
                  show(error.max_N_m) + " N m, rms " +
                  show(std::sqrt(error.sum_squares / static_cast<double>(error.count))) + " N m");
   }

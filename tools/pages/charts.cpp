@@ -177,7 +177,7 @@ Plot channel_plot(const ChannelSeries& channel, const RecordingSeries& recording
     plot.below = {residuals};
   }
   for (const auto& i : recording.held_out_s) plot.shaded.push_back({i.from, i.to});
-  plot.shaded_label = "held out, never fitted";
+  plot.shaded_label = "held out";
   return plot;
 }
 
@@ -283,7 +283,7 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
   const bool is_only = sweeps_of(light).size() == 1;
   Plot plot{"sweep_" + std::to_string(sweep) + "_of_" + recording.recording,
             "Curve " + (is_only ? "" : std::to_string(sweep) + " ") + "of " + recording.recording +
-                (recording.is_held_out ? ", never fitted" : ""),
+                (recording.is_held_out ? ", held out" : ""),
             "voltage [V]", "current [A]"};
   std::vector<size_t> rows;
   for (size_t i = 0; i < light.measured.size(); ++i) {

@@ -160,7 +160,7 @@ StageAxis recording_axis(const std::vector<RecordingSeries>& recordings) {
   StageAxis axis{"recording", "", {}};
   for (const RecordingSeries& recording : recordings) {
     axis.values.push_back(static_cast<double>(axis.values.size() + 1));
-    axis.names.push_back(recording.recording + (recording.is_held_out ? ", never fitted" : ""));
+    axis.names.push_back(recording.recording + (recording.is_held_out ? ", held out" : ""));
   }
   return axis;
 }

@@ -168,7 +168,7 @@ RunFile page_file(RunPage page) {
   return {
       "page.html",
       [shared](const std::filesystem::path& path) { write_file_whole(path, page_html(*shared)); },
-      "the run to look at, in a browser"};
+      "interactive page of the run"};
 }
 
 RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,

@@ -81,11 +81,11 @@ std::string cards(const Diagnosis& d) {
       card(keyed("i", "confidence", {d.confidence, 0.0}, readable_number(d.confidence, 3)),
            "confidence in the verdict");
   all += card(chi2("fit", d.chi2_per_sample_before, d.chi2_per_sample_after),
-              "χ² per number in the fitted data, before → after (1 is noise)");
+              "χ² per sample of the fitted data, before → after (1: noise only)");
   if (d.holdout) {
     all +=
         card(chi2("holdout", d.holdout->chi2_per_sample_before, d.holdout->chi2_per_sample_after),
-             "χ² per number in data never fitted, before → after");
+             "χ² per sample of the held-out data, before → after");
   }
   return tag("div", all, "cards");
 }
@@ -163,8 +163,8 @@ std::string manoeuvres(const Diagnosis& d) {
     std::string item = xml_text(m.text) + ".";
     if (!m.separates.empty()) item += " <i>Separates " + joined(m.separates) + ".</i>";
     if (m.log_evidence_expected > 0.0) {
-      item += " Expected lead of the right one: " + readable_number(m.log_evidence_expected, 2) +
-              " in the log evidence.";
+      item += " Expected advantage of the correct explanation: " +
+              readable_number(m.log_evidence_expected, 2) + " in the log evidence.";
     }
     list += tag("li", item);
   }
@@ -180,9 +180,10 @@ std::string effects(const Diagnosis& d) {
   section += tag("div", found, "findings");
   if (d.array) {
     const bool is_some = !d.array->suspects.empty() || !d.array->shadows.empty();
-    section += tag("figure", tag("figcaption", std::string("The array, cells by their numbers") +
-                                                   (is_some ? ", those concerned marked" : "")) +
-                                 array_html(*d.array));
+    section +=
+        tag("figure", tag("figcaption", std::string("The array, cells by their numbers") +
+                                            (is_some ? "; the affected cells are marked" : "")) +
+                          array_html(*d.array));
   }
   return tag("section", section + manoeuvres(d));
 }
@@ -343,7 +344,7 @@ std::string readings(const Diagnosis& d) {
                  "<span class=\"key dots\"></span> measured &emsp;"
                  "<span class=\"key before\"></span> nominal model &emsp;"
                  "<span class=\"key after\"></span> improved model &emsp;"
-                 "<span class=\"key shade\"></span> held out, never fitted &emsp;"
+                 "<span class=\"key shade\"></span> held out &emsp;"
                  "<span class=\"key level\"></span> ± 2 σ of one reading");
   const bool found = d.verdict != Verdict::consistent;
   for (const RecordingSeries& recording : shown_recordings(d, SIZE_MAX)) {

@@ -66,7 +66,7 @@ bool TickClock::served(size_t tick, int64_t now_ns, int64_t computing_ns) {
   ++missed_;
   if (on_miss_ == OnMiss::stop) {
     throw NumericalError("tick " + std::to_string(tick) + " was " + shortest(late_s) +
-                         " s late, and serve.on_miss says stop");
+                         " s late, and serve.on_miss = \"stop\"");
   }
   if (on_miss_ == OnMiss::slip) slipped_ns_ += late_ns;
   return true;

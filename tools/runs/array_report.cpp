@@ -23,8 +23,8 @@ std::optional<double> power_of(const ArrayResult& result, const std::string& qua
 void print_requirements(const Console& console, const ArrayTarget& target,
                         const ArrayResult& result, const LossInputs& light) {
   const double needed_V = target.efficiency * light.photon_V;
-  console.heading("What " + show(target.power_W) + " W and " + show_percent(target.efficiency) +
-                  " require");
+  console.heading("Requirements of " + show(target.power_W) + " W and " +
+                  show_percent(target.efficiency));
   console.line("  a photon has " + show(light.photon_V) + " eV: at most " +
                show(1.0 / light.photon_V) + " A/W; " + show_percent(target.efficiency) +
                " needs EQE V_oc FF = " + show(needed_V) + " V");

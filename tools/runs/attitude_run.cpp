@@ -18,7 +18,7 @@ namespace {
 constexpr const char* optical_tables[] = {"scene", "material",   "source", "receiver", "attitude",
                                           "trace", "torque_map", "camera", "effect"};
 
-// Collects the files that texts of the experiment name, relative to its folder.
+// Collects the files that strings of the experiment name, relative to its folder.
 void collect_files(const SettingsNode& root, const std::filesystem::path& folder,
                    std::vector<std::filesystem::path>& files) {
   for_each_node(root, [&](const SettingsNode& node) {
@@ -34,9 +34,10 @@ bool is_optical(const std::string& key) {
          std::end(optical_tables);
 }
 
-std::string brief(double value) {
+// Values below `rounding` are rounding errors of zero.
+std::string brief(double value, double rounding) {
   if (std::isnan(value)) return "-";
-  return printed("%.3g", value);
+  return printed("%.3g", std::abs(value) > rounding ? value : 0.0);
 }
 
 // Minimum height above a marker at which its light starts, for models without thickness.
@@ -181,7 +182,11 @@ void print_table(const Console& console, const Table& table,
     std::vector<std::string> texts = {wanted.title};
     is_text.push_back(!column->texts.empty());
     texts.insert(texts.end(), column->texts.begin(), column->texts.end());
-    for (const double value : column->values) texts.push_back(brief(value));
+    double largest = 0.0;
+    for (const double value : column->values) {
+      if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+    }
+    for (const double value : column->values) texts.push_back(brief(value, 1e-14 * largest));
     cells.push_back(std::move(texts));
   }
   if (cells.empty()) return;

@@ -66,23 +66,24 @@ std::string show(double value) {
 
 std::string show(const Estimate& estimate, const std::string& unit) {
   const double error = estimate.standard_error;
-  if (std::isinf(error)) return show(estimate.value) + " " + unit + " (undetermined)";
+  const std::string end = unit.empty() ? "" : " " + unit;
+  if (std::isinf(error)) return show(estimate.value) + end + " (undetermined)";
   // The scatter of equal samples due to rounding is not an error.
   const double rounding = 1e-12 * std::abs(estimate.value);
-  if (!(error > rounding)) return show(estimate.value) + " " + unit;
-  // Two digits of the error determine the number of digits of the value, up to eight.
+  if (!(error > rounding)) return show(estimate.value) + end;
+  // Two digits of the rounded error determine the number of digits of the value, up to eight.
   const double largest = std::max(std::abs(estimate.value), error);
   const int exponent = magnitude(largest);
-  const int last = std::max(magnitude(error) - 1, exponent - 7);
+  const int last = std::max(magnitude(error / 0.995) - 1, exponent - 7);
   if (exponent >= -3 && exponent < 6) {
     const double shown = std::max(error, std::pow(10.0, last));
     return fixed(estimate.value, std::max(0, -last)) + " ± " + fixed(shown, std::max(0, -last)) +
-           " " + unit;
+           end;
   }
   const double scale = std::pow(10.0, exponent);
   const int decimals = exponent - last;
   return "(" + fixed(estimate.value / scale, decimals) + " ± " + fixed(error / scale, decimals) +
-         ")×" + power_of_ten(exponent) + " " + unit;
+         ")×" + power_of_ten(exponent) + end;
 }
 
 std::string show_percent(double fraction) {

@@ -114,7 +114,7 @@ std::vector<InputError> unlit_receiver_errors(const OpticalRun& run) {
     if (!receiver.flux_map || on_receiver_W[i] > 0.0) continue;
     mistakes.push_back(experiment.file.receivers[i].error(
         "node", "\"" + receiver.name + "\", which no light reaches",
-        "a part that is lit: of which side, facing where?"));
+        "a lit part; check `node`, `side` and `facing`"));
   }
   return mistakes;
 }

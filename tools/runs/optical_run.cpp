@@ -198,7 +198,7 @@ double notice_level_sigma(int replicates) {
 std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const {
   // Likely causes and remedies.
   constexpr const char* rarely_met =
-      ": few rays carry much of it; raise trace.rays until the figure falls";
+      ": few rays contribute most of it; increase trace.rays until the difference decreases";
   constexpr const char* by_edges =
       ": parts too small for the rays, or light through gaps; raise trace.rays, or compare with "
       "trace.direct = \"rays\"";
@@ -226,7 +226,7 @@ std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const
     for (const DirectTorque& direct : checks) {
       if (direct.worst_sigma <= loud_sigma) continue;
       lines.push_back(what + " of direct light on " + direct.name +
-                      ": gathered and by rays differ by " + show(direct.worst_sigma) +
+                      ": quadrature and rays differ by " + show(direct.worst_sigma) +
                       " standard errors" + by_edges);
     }
   };
@@ -341,14 +341,14 @@ bool misses_everything(const PowerBalance& balance) {
 
 void print_direct_checks(const Console& console, const OpticalResult& result) {
   for (const DirectLight& direct : result.direct.gathered) {
-    console.line("  direct light on " + direct.name + ": gathered and by rays differ by " +
+    console.line("  direct light on " + direct.name + ": quadrature and rays differ by " +
                  show_brief(std::abs(direct.difference_sigma)) + " standard errors in all, " +
                  show_brief(std::sqrt(direct.mean_square)) + " (rms) in a bin");
   }
   const auto print = [&](const std::string& what, const std::vector<DirectTorque>& checks) {
     for (const DirectTorque& direct : checks) {
       console.line("  " + what + " of direct light on " + direct.name +
-                   ": gathered and by rays differ by at most " + show_brief(direct.worst_sigma) +
+                   ": quadrature and rays differ by at most " + show_brief(direct.worst_sigma) +
                    " standard errors");
     }
   };

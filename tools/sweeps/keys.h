@@ -16,7 +16,7 @@ inline constexpr TextKey key(
     "any key outside `[sweep]`, as in `--set`: `source[0].power_W`, `source[0].position_m[2]`");
 inline constexpr TextKey name("name", "", "name of the axis in pictures, such as `\"standoff\"`");
 inline constexpr OtherKey values("values", Key::an_array,
-                                 "list of the values (numbers, texts or arrays); *or*",
+                                 "list of the values (numbers, strings or arrays); *or*",
                                  {.optional = true});
 inline constexpr NumbersKey weights("weights", Range::not_negative(), "weight of each value",
                                     {.usually = "equal"});

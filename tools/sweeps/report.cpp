@@ -149,7 +149,7 @@ std::vector<std::string> figure_columns(const SweepPlan& plan, const std::vector
 
 Table sweep_table(const SweepPlan& plan, const SweepResult& result) {
   const std::vector<Design>& designs = result.designs;
-  Table table = Table::of("sweep", "What " + plan.verb + " gave, design by design", {"design"});
+  Table table = Table::of("sweep", "Results of " + plan.verb + " for each design", {"design"});
   for (size_t d = 0; d < designs.size(); ++d) table.row().set("design", static_cast<double>(d + 1));
   for (size_t axis = 0; axis < plan.axes.size(); ++axis) add_axis(table, plan, axis);
   std::vector<std::string> columns = figure_columns(plan, first_figures(result));

@@ -239,8 +239,8 @@ class Checker {
     if (has_light(*file_)) {
       const LightSettings settings = read_light(*file_);
       require_light_once(*file_);
-      if (settings.mode == LightSettings::Mode::table) light = ", in light by a table";
-      if (settings.mode == LightSettings::Mode::trace) light = ", in light traced on the way";
+      if (settings.mode == LightSettings::Mode::table) light = ", with a table of light";
+      if (settings.mode == LightSettings::Mode::trace) light = ", with light traced during the run";
     }
     add("propagate", show(run.duration_s) + " s of " + show(run.model.platform.mass_kg) +
                          " kg under " + counted(run.model.disturbances.size(), "disturbance") +
@@ -268,7 +268,7 @@ class Checker {
       std::string no_search, no_sweep;
       if (!lacks.empty()) no_search = "[sweep] lacks " + lacks;
       if (plan.designs() == 0) {
-        no_sweep = "[sweep] lacks count, or values, of an axis with from and to";
+        no_sweep = "an axis of [sweep] with from and to has neither count nor values";
       }
       if (!can_run) no_search = no_sweep = plan.verb + " cannot run with its designs";
       report_command("optimise", "over " + counted(plan.axes.size(), "key") + " by " + plan.verb,
@@ -325,6 +325,28 @@ CheckReport run_check(const RunOptions& options, KeyCheck keys) {
   return Checker(options, keys).report();
 }
 
+void print_json(const CheckReport& report) {
+  using Json = nlohmann::ordered_json;
+  const auto listed = [](const std::vector<CheckReport::Command>& commands) {
+    Json list = Json::array();
+    for (const CheckReport::Command& one : commands) {
+      list.push_back({{"name", one.name}, {"what", clean_text(one.what)}});
+    }
+    return list;
+  };
+  Json json = {{"schema", "photorque.check/1"},
+               {"commands", listed(report.commands)},
+               {"impossible", listed(report.impossible)},
+               {"tables", report.tables},
+               {"mistakes", Json::array()},
+               {"notes", Json::array()}};
+  for (const InputError& mistake : report.mistakes) {
+    json["mistakes"].push_back(clean_text(mistake.what()));
+  }
+  for (const std::string& note : report.notes) json["notes"].push_back(clean_text(note));
+  std::puts(json.dump(2).c_str());
+}
+
 }  // namespace photorque
 
 namespace photorque::verbs::check {
@@ -366,28 +388,6 @@ void print_lacking(const Console& console, const CheckReport& report,
     // Not printed for `optimise` if `sweep` can run, and vice versa: both read [sweep].
     if (!runs) console.line("not " + names + ": without " + verb.needs);
   }
-}
-
-void print_json(const CheckReport& report) {
-  using Json = nlohmann::ordered_json;
-  const auto listed = [](const std::vector<CheckReport::Command>& commands) {
-    Json list = Json::array();
-    for (const CheckReport::Command& one : commands) {
-      list.push_back({{"name", one.name}, {"what", clean_text(one.what)}});
-    }
-    return list;
-  };
-  Json json = {{"schema", "photorque.check/1"},
-               {"commands", listed(report.commands)},
-               {"impossible", listed(report.impossible)},
-               {"tables", report.tables},
-               {"mistakes", Json::array()},
-               {"notes", Json::array()}};
-  for (const InputError& mistake : report.mistakes) {
-    json["mistakes"].push_back(clean_text(mistake.what()));
-  }
-  for (const std::string& note : report.notes) json["notes"].push_back(clean_text(note));
-  std::puts(json.dump(2).c_str());
 }
 
 void run(const CommandOptions& options, const Program& program) {

@@ -33,4 +33,7 @@ enum class KeyCheck {
 // few rays to find lamps inside solids and maps without light.
 CheckReport run_check(const RunOptions& options, KeyCheck keys = KeyCheck::by_declaration);
 
+// Prints the report as JSON on standard output.
+void print_json(const CheckReport& report);
+
 }  // namespace photorque

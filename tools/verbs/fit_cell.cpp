@@ -45,7 +45,7 @@ void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
                            std::to_string(curves.size()) + " curves, one below the other");
     }
     if (curve.is_reversed) {
-      task.notes.push_back(name + ": currents are negative in light; counted the other way round");
+      task.notes.push_back(name + ": currents are negative in light; their sign was reversed");
     }
     if (curve.is_density) {
       task.is_density = true;

@@ -20,7 +20,7 @@ bool is_determined(const CellRow& row) {
 
 std::string words_of(const CellRow& row) {
   const std::string value = show(row.estimate.value);
-  if (row.is == Is::lower_limit) return "above " + value + " (95 %): no leak shows";
+  if (row.is == Is::lower_limit) return "above " + value + " (95 %): no leakage is detected";
   if (row.is == Is::upper_limit) return "below " + value + " (95 %)";
   // An error of ten times the number means that it is not determined.
   constexpr double hopeless = 10.0;

@@ -29,7 +29,8 @@ struct Options : CommandOptions {
 
 void add_options(Command& command, Options& options) {
   command.add_experiment(options, Command::Folder::none);
-  command.add("--scene", options.scene, "A model (glTF, GLB, STL or OBJ) to be lit");
+  command.list.front().help = "Experiment file to write (TOML)";
+  command.add("--scene", options.scene, "Model (glTF, GLB, STL or OBJ) that the light falls on");
 }
 
 constexpr const char* platform_text = R"(
@@ -272,8 +273,8 @@ std::string light_text(const GltfModel& model, const std::string& file, const Sc
          "intensity\nwavelength_nm = 730\nposition_m = " +
          triple(lamp_m) +
          "              # lab: z up; before the part that is measured\ndirection = " +
-         triple(Vec3::Zero() - lit.to_lamp) + "\n\n# ---- What is measured\n" +
-         listed("Parts", nodes) + "[[receiver]]\nkind = \"flux_map\"\nnode = " + quoted(lit.path) +
+         triple(Vec3::Zero() - lit.to_lamp) + "\n\n# ---- Receivers\n" + listed("Parts", nodes) +
+         "[[receiver]]\nkind = \"flux_map\"\nnode = " + quoted(lit.path) +
          "\nfacing = " + triple(Vec3::Zero() + lit.to_lamp) +
          "                    # only faces turned to the lamp\nbins = [100, 100]\n\n"
          "[[receiver]]\nkind = \"wrench\"                       # force and torque of light on the "
@@ -358,6 +359,7 @@ void run(const Options& options, const Program&) {
   if (options.experiment.has_parent_path()) make_folders(options.experiment.parent_path());
   const auto [text, report] = first_right(texts, options);
   write_file_whole(options.experiment, text);
+  if (options.json) print_json(report);
   console.line("Written to " + options.experiment.string());
   if (!size.empty()) console.line(size);
   for (const CheckReport::Command& command : report.commands) {
@@ -369,10 +371,10 @@ void run(const Options& options, const Program&) {
 }  // namespace
 
 Verb kind() {
-  return {
-      "new",
-      "A first experiment, commented: for a model (--scene; glTF, STL, OBJ), or a platform alone",
-      command_with(add_options, run)};
+  return {"new",
+          "A first experiment with comments, for a model (--scene; glTF, STL, OBJ) or for a "
+          "platform alone",
+          command_with(add_options, run)};
 }
 
 }  // namespace photorque::verbs::new_experiment

@@ -125,7 +125,7 @@ class Search {
       if (std::min(at - box_.low[i], box_.high[i] - at) < 1e-3 * span) {
         console_.line("  note: the largest figure is at an end of the range of " +
                       plan_.axes[i].key + " (" + plan_.axes[i].values[index] +
-                      "): widen it if that can be built");
+                      "): widen the range if such designs can be built");
       }
     }
   }

@@ -90,11 +90,17 @@ struct Options : CommandOptions {
 void add_options(Command& command, Options& options) {
   command.add_common(options);
   command.add("--out", options.out, "Write the schema into this file");
-  command.add("--key", options.key, "Explain one key instead: source.power_W");
+  command.add("--key", options.key,
+              "Print the meaning of one key, such as source.power_W, instead of the schema");
   command
       .add("--document", options.documents,
-           "Update the tables of keys in this Markdown file instead")
+           "Instead of the schema: update the tables of keys in this Markdown file")
       .is_one_each = true;
+  command.mistake = [&options] {
+    return options.json && (!options.key.empty() || !options.documents.empty())
+               ? "--json: found with --key or --document, expected without: only the schema is JSON"
+               : "";
+  };
 }
 
 void run(const Options& options, const Program&) {

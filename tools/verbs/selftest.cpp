@@ -3,7 +3,9 @@
 // run.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "core/constants.h"
@@ -100,16 +102,22 @@ class Account {
     tell(what, right, show(found.value) + ", expected " + show(expected));
   }
   void tell(const std::string& what, bool right, const std::string& how) {
-    ++checks_;
+    checks_.push_back({{"name", what}, {"right", right}, {"result", how}});
     wrong_ += right ? 0 : 1;
     console_.line((right ? "  right  " : "  WRONG  ") + padded(what, 58) + how);
   }
-  int checks() const { return checks_; }
+  size_t checks() const { return checks_.size(); }
   int wrong() const { return wrong_; }
+  std::string json() const {
+    const nlohmann::ordered_json all = {
+        {"schema", "photorque.selftest/1"}, {"wrong", wrong_}, {"checks", checks_}};
+    return all.dump(2);
+  }
 
  private:
   const Console& console_;
-  int checks_ = 0, wrong_ = 0;
+  nlohmann::ordered_json checks_ = nlohmann::ordered_json::array();
+  int wrong_ = 0;
 };
 
 bool are_equal(const Figures& a, const Figures& b) {
@@ -125,33 +133,35 @@ void check_light(const Bench& bench, Account& account) {
   constexpr double lean = 1e-5;
   const double power_W = irradiance_W_m2 * area_m2, force_N = power_W / speed_of_light_m_s;
   const auto black = bench.trace(plate_toml("absorptance = 1"));
-  account.near("sunlight on a plate, gathered [W]", black.at("power_on_plate_W"), power_W, 1e-9);
-  account.near("the same by rays [W]", black.at("direct_by_rays_on_plate_W"), power_W, 1e-9);
-  account.near("its pressure on a black plate [N]", black.at("force_z_body_body_N"), -force_N,
+  account.near("sunlight on a plate by quadrature [W]", black.at("power_on_plate_W"), power_W,
+               1e-9);
+  account.near("sunlight on a plate by rays [W]", black.at("direct_by_rays_on_plate_W"), power_W,
+               1e-9);
+  account.near("radiation force on a black plate [N]", black.at("force_z_body_body_N"), -force_N,
                lean);
-  account.near("its torque about the origin [N m]", black.at("torque_y_body_body_N_m"),
+  account.near("radiation torque about the origin [N m]", black.at("torque_y_body_body_N_m"),
                arm_m * force_N, lean);
   account.tell("power balance closes", black.at("ledger_closure").value < 1e-12,
                "to " + show(black.at("ledger_closure").value));
   const auto mirror = bench.trace(plate_toml("absorptance = 0\nspecular = 1"));
-  account.near("its pressure on a mirror [N]", mirror.at("force_z_body_body_N"), -2.0 * force_N,
+  account.near("radiation force on a mirror [N]", mirror.at("force_z_body_body_N"), -2.0 * force_N,
                lean);
   const auto one = bench.trace(plate_toml("absorptance = 0.3\ndiffuse = 0.7"), 1);
   const auto seven = bench.trace(plate_toml("absorptance = 0.3\ndiffuse = 0.7"), 7);
-  account.tell("the same bits on one thread and on seven", are_equal(one, seven), "");
+  account.tell("equal bits with one and seven threads", are_equal(one, seven), "");
 }
 
 void check_motion(const Bench& bench, Account& account) {
   constexpr double integrator = 1e-9;
   const auto drag =
       bench.propagate(motion_toml("kind = \"bearing_drag\"\ncoefficient_N_m_s = 0.01"));
-  account.near("a rate that a drag slows down [rad/s]", drag.at("final_rate_rad_s"),
-               0.5 * std::exp(-1.0), integrator);
+  account.near("rate after viscous drag [rad/s]", drag.at("final_rate_rad_s"), 0.5 * std::exp(-1.0),
+               integrator);
   const auto turbine =
       bench.propagate(motion_toml("kind = \"turbine_torque\"\ntorque_N_m = 0.001"));
-  account.near("a rate that a torque speeds up [rad/s]", turbine.at("final_rate_rad_s"),
+  account.near("rate after a constant torque [rad/s]", turbine.at("final_rate_rad_s"),
                0.5 + 0.001 * 10.0 / 0.1, integrator);
-  account.near("and the angle turned meanwhile [deg]", turbine.at("final_yaw_deg"),
+  account.near("angle after a constant torque [deg]", turbine.at("final_yaw_deg"),
                std::remainder((0.5 * 10.0 + 0.5 * 0.01 * 100.0) / degree_rad, 360.0), integrator);
 }
 
@@ -181,6 +191,7 @@ void run(const CommandOptions& options, const Program& program) {
   }
   console.line(std::to_string(account.checks()) + " checks, " + std::to_string(account.wrong()) +
                " wrong");
+  if (options.json) std::puts(account.json().c_str());
   if (account.wrong() > 0) {
     throw NumericalError(std::to_string(account.wrong()) + " of " +
                          std::to_string(account.checks()) + " checks of this machine are wrong");

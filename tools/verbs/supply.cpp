@@ -74,7 +74,8 @@ namespace photorque::verbs::supply {
 
 Verb kind() {
   return {"supply",
-          "Battery, cable, microwaves, coils and light compared: power, mass, disturbance",
+          "Comparison of power supplies (battery, cable, microwaves, induction, light): power, "
+          "mass, torque",
           command_that_writes(run_supply),
           {"platform", "environment", "disturbance", "sensors", "supply_trade"},
           "[supply_trade]"};

@@ -165,7 +165,7 @@ void run(const Options& options, const Program& program) {
 
 Verb kind() {
   return {"sweep",
-          "One command over many designs: any keys of the experiment, one table",
+          "One command for many designs, with all results in one table",
           command_with(add_options, run),
           {"sweep"},
           "[sweep]"};

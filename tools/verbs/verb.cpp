@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <deque>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -89,18 +88,17 @@ bool is_brief(const std::string& verb) {
   return std::ranges::find(brief, verb) != brief.end();
 }
 
-// Prints the first lines of a text at once, the last ones at its end, and warnings always.
+// Prints the first lines of a text. Of later sections, prints the heading and the first lines; of
+// all, warnings.
 class ShortText {
  public:
   explicit ShortText(std::function<void(const std::string&)> print) : print_(std::move(print)) {}
   ShortText(const ShortText&) = delete;
   ShortText& operator=(const ShortText&) = delete;
   ~ShortText() {
-    if (left_out_ > 0) {
-      print_("… " + std::to_string(left_out_) + (left_out_ == 1 ? " line" : " lines") +
-             " more with --verbose");
-    }
-    for (const std::string& line : last_) print_(line);
+    if (left_out_ == 0) return;
+    print_("… " + std::to_string(left_out_) + (left_out_ == 1 ? " line" : " lines") +
+           " more with --verbose");
   }
   void take(const std::string& text) {
     std::istringstream lines(text + "\n");
@@ -109,24 +107,21 @@ class ShortText {
 
  private:
   void take_line(const std::string& line) {
-    constexpr int first = 23;
-    constexpr size_t last = 7;
+    constexpr int whole = 23, of_section = 6;  // the latter with the empty line and the heading
+    in_section_ = line.empty() ? 1 : in_section_ + 1;
     const size_t begin = std::min(line.find_first_not_of(' '), line.size());
     const bool warns =
         line.compare(begin, 7, "WARNING") == 0 || line.compare(begin, 7, "warning") == 0;
-    if (printed_ < first || warns) {
-      ++printed_;
-      return print_(line);
+    if (printed_ >= whole && in_section_ > of_section && !warns) {
+      ++left_out_;
+      return;
     }
-    last_.push_back(line);
-    if (last_.size() <= last) return;
-    last_.pop_front();
-    ++left_out_;
+    ++printed_;
+    print_(line);
   }
 
   std::function<void(const std::string&)> print_;
-  int printed_ = 0, left_out_ = 0;
-  std::deque<std::string> last_;
+  int printed_ = 0, in_section_ = 0, left_out_ = 0;
 };
 
 }  // namespace
@@ -139,15 +134,15 @@ std::filesystem::path CommandOptions::out_folder() const {
 void Command::add_common(CommandOptions& common) {
   add("--threads", common.threads, "Threads to use (default: all)").range =
       Option::Between<int>(0, 1024);
-  add("--seed", common.seed, "Seed of all random numbers, instead of the experiment's").range =
-      Option::Between<int64_t>(0, std::numeric_limits<int64_t>::max());
+  add("--seed", common.seed, "Seed of all random numbers, instead of the seed in the experiment")
+      .range = Option::Between<int64_t>(0, std::numeric_limits<int64_t>::max());
   Option& memory = add("--max-memory", common.max_memory_GB,
                        "Maximum memory in GB (default: nine tenths of the free memory)");
   memory.range = Option::Between<double>(0.5, 1e6);
   memory.mistake = [](const std::string& text) {
     return number_in(text) ? "" : text + " is no finite number";
   };
-  add("--quiet", common.quiet, "Print nothing but errors");
+  add("--quiet", common.quiet, "Print only errors");
   add("--json", common.json, "Print the summary as JSON instead of text");
   add("--verbose", common.verbose, "Print everything: checks, reasons and long tables");
 }
@@ -155,12 +150,13 @@ void Command::add_common(CommandOptions& common) {
 void Command::add_results(CommandOptions& common) {
   add("-o,--out", common.out, "Folder for the results (default: out/EXPERIMENT/VERB)");
   add("--format", common.format,
-      "Further formats of the results, with commas between: exr, tiff, csv, vtkhdf (maps), svg, "
-      "pdf "
-      "(pictures)")
+      "Additional formats, separated by commas: exr, tiff, csv, vtkhdf (maps); svg, pdf "
+      "(pictures); "
+      "png (of diagnose)")
       .mistake = unknown_format;
   add("--style", common.style,
-      "Pictures for a page (default), paper (no title, large letters) or slide")
+      "Style of the pictures: page (default), paper (no title, large letters), slide (larger "
+      "letters)")
       .mistake = unknown_style;
 }
 
@@ -178,7 +174,8 @@ void Command::add_traced_experiment(CommandOptions& common, Folder writes) {
       "Add rays until every bin above a tenth of the peak has this relative "
       "standard error (0.01: 1 %)")
       .range = Option::Between<double>(1e-6, 1.0);
-  add("--max-time", common.max_time_s, "Stop adding rays before this many seconds have passed")
+  add("--max-time", common.max_time_s,
+      "Maximum time of the trace in seconds; requires --target-error")
       .mistake = above_zero("seconds");
   add("--allow-outside", common.allow_outside,
       "Follow links and paths of the model that lead out of its folder");
@@ -194,8 +191,9 @@ void Command::add_page(CommandOptions& common) {
 
 void Command::add_checkpoint(CommandOptions& common) {
   add("--checkpoint", common.checkpoint_min,
-      "Save the state of the run (VERB.checkpoint in the output folder) every so many minutes; "
-      "after a kill the same command resumes")
+      "Interval in minutes at which the state is saved (VERB.checkpoint in the output folder); "
+      "after "
+      "an interruption, the same command resumes")
       .mistake = above_zero("minutes", 1e6);
 }
 

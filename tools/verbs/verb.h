@@ -128,9 +128,9 @@ std::function<Command()> command_that_writes(RunResult (*run)(const RunOptions&,
 // All verbs listed in tools/CMakeLists.txt, in that order.
 std::vector<Verb> all_verbs();
 
-// Text on standard output: at most 30 lines without --verbose. Lines in the middle are then
-// omitted, but no warnings. Silent with --quiet and --json. Progress is a bar if standard error is
-// a terminal, otherwise a line at most every ten seconds.
+// Text on standard output. Without --verbose, long sections are shortened after the first 23 lines;
+// headings, their first lines and warnings are always printed. Silent with --quiet and --json.
+// Progress is a bar if standard error is a terminal, otherwise a line at most every ten seconds.
 Console terminal(const CommandOptions& options);
 
 // Formats and style of --format and --style. Throws InputError for an unknown format.

@@ -122,7 +122,7 @@ DisturbanceKind kind() {
           .summary = "light exerts pressure on the surfaces that it meets",
           .read = read,
           .screening = {.of_experiment = of_experiment,
-                        .widths = "1 m³, where `[environment.sun]` is stated"},
+                        .widths = "`area_moment_m3` 1 each; needs `[environment.sun]`"},
           .budget = {.paper_figure = "radiation_torque_at_30_deg_N_m"},
           .keys = {key::table, area_moment, key::sun_direction_lab, factor}};
 }

@@ -29,10 +29,9 @@ DisturbanceKind kind() {
       .summary = "the laboratory itself turns once a day",
       .read = read_law<EarthRotation, Stage::mass>,
       .screening = {.parametrisations =
-                        {{"the laboratory turns with the Earth: the platform and the gyro feel it",
-                          {}}},
+                        {{"the rotation of the Earth acts on the platform and on the gyro", {}}},
                     .needs = Requirement::turning_laboratory},
-      .sets = "the turning of the laboratory"};
+      .sets = "the rotation of the laboratory"};
 }
 
 }  // namespace photorque::kinds::earth_rotation

@@ -154,8 +154,8 @@ ModuleHypothesis cracked(const ModuleDesign& design, int count, double alternati
   h.label = "cell_cracked (" + cells(count) + ")";
   h.explanation =
       cells(count) +
-      " of the module with a part of the area cut off but for a resistance: less active "
-      "area and more series resistance; a curve does not say which cells";
+      " of the module have a part that is connected only through a resistance: less active "
+      "area and more series resistance; a curve does not determine which cells";
   h.count = count;
   h.alternatives = alternatives;
   h.parameters = {wide("fraction", 0.2, 0.3, 1e-3, 0.98),

@@ -92,7 +92,8 @@ void run(const CommandOptions& options, const Program&) {
 
 Verb kind() {
   return {"budget",
-          "Every disturbance torque at one state, ranked; for STASIS with published figures",
+          "Every disturbance torque at one state, largest first; for STASIS compared with "
+          "published figures",
           command_with(experiment_options, run),
           {"platform", "environment", "disturbance", "sensors", "budget"},
           "[platform]",

@@ -77,8 +77,8 @@ bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs:
     for (const fs::path& path : *all) {
       if (!fs::exists(path) || is_of_light(path, reading, of_platform) == of_light) continue;
       throw InputError({path.string()}, "",
-                       of_light ? "no recording of light" : "a recording of light",
-                       std::string(of_light ? "one" : "one of motion") + " as " +
+                       of_light ? "no column names of light" : "column names of light",
+                       std::string("a recording of ") + (of_light ? "light" : "motion") + ", as " +
                            recordings.front().filename().string());
     }
   }
@@ -413,11 +413,11 @@ void print_diagnosis(const Console& console, const Diagnosis& d) {
     }
     for (const auto& [key, words] : effect.texts) console.line("    " + key + " = " + words);
   }
-  console.line("  chi² per sample " + show(d.chi2_per_sample_before) + " before, " +
-               show(d.chi2_per_sample_after) + " after");
+  console.line("  chi² per sample " + readable_number(d.chi2_per_sample_before) + " before, " +
+               readable_number(d.chi2_per_sample_after) + " after");
   if (d.holdout) {
-    console.line("  never fitted:    " + show(d.holdout->chi2_per_sample_before) + " before, " +
-                 show(d.holdout->chi2_per_sample_after) + " after");
+    console.line("  held out:        " + readable_number(d.holdout->chi2_per_sample_before) +
+                 " before, " + readable_number(d.holdout->chi2_per_sample_after) + " after");
   }
   for (const std::string& warning : d.warnings) console.line("  note: " + warning);
 }

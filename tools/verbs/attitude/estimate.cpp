@@ -90,8 +90,8 @@ std::vector<Source> read_sources(AttitudeExperiment& experiment,
       throw InputError(
           {truth->string(), 0}, "t_s",
           printed("no time of the recording from %.6g s on", sources[0].recording.time_s[settled]),
-          "the truth at the recording's times: what comes before, while the filter "
-          "settles, is not counted");
+          "the truth at the times of the recording; rows before that time, while the filter "
+          "converges, are not used");
     }
   }
   return sources;
@@ -259,7 +259,7 @@ void run(const Options& options, const Program&) {
 
 Verb kind() {
   return {"estimate",
-          "Attitude and rate of recordings or simulated runs, filtered and smoothed",
+          "Attitude and rate by Kalman filter and smoother, from recordings or simulated runs",
           command_with(add_options, run),
           {"platform", "environment", "disturbance", "sensors", "recording", "estimate"},
           "[platform]"};

@@ -24,11 +24,12 @@ void run(const FmuOptions& options, const Program&) {
 }  // namespace
 
 Verb kind() {
-  return {"fmu",
-          "The platform as an FMI unit (3.0 or 2.0) for co-simulation in other programs",
-          command_with(add_options, run),
-          {"platform", "environment", "disturbance", "sensors", "propagate", "light", "array"},
-          "[platform]"};
+  return {
+      "fmu",
+      "The platform as an FMI unit (3.0 or 2.0) for co-simulation in other programs",
+      command_with(add_options, run),
+      {"platform", "environment", "disturbance", "sensors", "propagate", "serve", "light", "array"},
+      "[platform]"};
 }
 
 }  // namespace photorque::verbs::fmu

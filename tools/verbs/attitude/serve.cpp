@@ -94,18 +94,19 @@ RunResult serve_experiment(const RunOptions& options, const Console& console) {
   const auto write = [session, stamp](const std::filesystem::path& path) {
     write_recording(path, commands_recording(session->commands(), session->last_tick_s()), {stamp});
   };
-  result.files.push_back({"commands.csv", write, "what acted, for propagate.commands"});
+  result.files.push_back({"commands.csv", write, "applied commands, for propagate.commands"});
   return result;
 }
 
 }  // namespace
 
 Verb kind() {
-  return {"serve",
-          "The platform in real time: measurements out, commands in, over UDP",
-          command_that_writes(serve_experiment),
-          {"platform", "environment", "disturbance", "sensors", "propagate", "serve", "light"},
-          "[platform]"};
+  return {
+      "serve",
+      "The platform in real time: measurements out, commands in, over UDP",
+      command_that_writes(serve_experiment),
+      {"platform", "environment", "disturbance", "sensors", "propagate", "serve", "light", "array"},
+      "[platform]"};
 }
 
 }  // namespace photorque::verbs::serve
