@@ -2,12 +2,15 @@
 // that a rasteriser counts, which knows neither sides nor shadows.
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "core/constants.h"
 #include "raytrace/tracing/tracer.h"
 #include "receivers/gather/bodies/sunlit_body.h"
 #include "scenes/cad/model.h"
+#include "scenes/experiment/experiment.h"
 #include "scenes/gltf/coincident.h"
 #include "scenes/gltf/reader.h"
 #include "tests/outside.h"
@@ -38,6 +41,14 @@ Beam sun(double scene_radius_m) {
 
 GltfModel model_of(const std::string& obj) {
   return read_cad_bytes(obj, "part.obj", CadFormat::obj, {1.0});
+}
+
+// The model as an experiment uses it.
+GltfModel separated(GltfModel model) {
+  for (std::string& line : separate_coincident_faces(model.scene)) {
+    model.notices.push_back(std::move(line));
+  }
+  return model;
 }
 
 std::vector<std::string> about_coincidence(const GltfModel& model) {
@@ -151,7 +162,7 @@ TEST(CoincidentFaces, ReceiveTheLightOnce) {
                                         "v -0.5 -0.4999999 0\nf 1 2 5\no d\nf 1 2 4\n"},
   };
   for (const auto& [what, obj] : sheets) {
-    const GltfModel model = model_of(obj);
+    const GltfModel model = separated(model_of(obj));
     EXPECT_FALSE(about_coincidence(model).empty()) << what;
     const Scene scene = black(model.scene);
     for (const Vec3& towards :
@@ -177,8 +188,9 @@ TEST(CoincidentFaces, AtASlightAngleReceiveTheLightOnce) {
           tilted << "v " << axis_m + (x - axis_m) * std::cos(angle_rad) << " " << y << " "
                  << (x - axis_m) * std::sin(angle_rad) << "\n";
         }
-        const Scene scene =
-            black(model_of(unit_square + "o a\nf 1 2 3 4\n" + tilted.str() + "o b\n" + face).scene);
+        const Scene scene = black(
+            separated(model_of(unit_square + "o a\nf 1 2 3 4\n" + tilted.str() + "o b\n" + face))
+                .scene);
         for (const Vec3& travel : {Vec3(0, 0, -1), Vec3(0, 0, 1)}) {
           EXPECT_NEAR(pushed_m2(scene, travel), 1.0, 3e-4) << angle_rad << " " << axis_m << face;
         }
@@ -221,6 +233,7 @@ TEST(CoincidentFaces, ThatTransmitAreOneSheet) {
         scene.surfaces[side] = grey_surface("sheet", 0.0, 0.0, through);
       }
     }
+    separate_coincident_faces(scene);
     for (const auto& [travel, through] :
          {std::pair(Vec3(0, 0, -1), one.front), std::pair(Vec3(0, 0, 1), one.back)}) {
       const double absorbed = 1.0 - std::pow(through, one.sheets);
@@ -251,8 +264,8 @@ void expect_sides(Scene scene, double front, double back) {
 
 TEST(CoincidentFaces, BackToBackHaveTheOpticsOfTheirOwnSides) {
   for (const char* back : {"f 4 3 2 1\n", "f 3 2 1 4\n"}) {
-    const GltfModel model =
-        model_of(unit_square + "o a\nusemtl cell\nf 1 2 3 4\no b\nusemtl white\n" + back);
+    const GltfModel model = separated(
+        model_of(unit_square + "o a\nusemtl cell\nf 1 2 3 4\no b\nusemtl white\n" + back));
     EXPECT_THAT(about_coincidence(model),
                 ElementsAre(HasSubstr("4 triangles of \"a\" and \"b\" coincide back to back")));
     expect_sides(model.scene, 0.0, 1.0);
@@ -262,39 +275,71 @@ TEST(CoincidentFaces, BackToBackHaveTheOpticsOfTheirOwnSides) {
 // A foil on a panel, drawn in one plane and the same way: each side is that of the face that light
 // meets first there, and of no other.
 TEST(CoincidentFaces, AlikeHaveTheFrontOfTheFirstAndTheBackOfTheLast) {
-  const GltfModel model =
-      model_of(unit_square + "o foil\nusemtl white\nf 1 2 3 4\no panel\nusemtl black\nf 2 3 4 1\n");
+  const GltfModel model = separated(model_of(
+      unit_square + "o foil\nusemtl white\nf 1 2 3 4\no panel\nusemtl black\nf 2 3 4 1\n"));
   EXPECT_THAT(about_coincidence(model),
               ElementsAre(HasSubstr("light from the front meets only the first, of \"foil\", light "
                                     "from behind only the last, of \"panel\"")));
   expect_sides(model.scene, 1.0, 0.0);
 }
 
+// A closed box over the unit square between two heights; `first` corners precede it.
+std::string box(int first, double low, double high = NAN) {
+  std::ostringstream text;
+  text.precision(15);
+  if (std::isnan(high)) high = low + 1.0;
+  for (const double at : {low, high}) {
+    text << "v 0 0 " << at << "\nv 1 0 " << at << "\nv 1 1 " << at << "\nv 0 1 " << at << "\n";
+  }
+  for (const auto& face :
+       {std::array{4, 3, 2, 1}, std::array{5, 6, 7, 8}, std::array{1, 2, 6, 5},
+        std::array{2, 3, 7, 6}, std::array{3, 4, 8, 7}, std::array{4, 1, 5, 8}}) {
+    text << "f";
+    for (const int corner : face) text << " " << corner + first;
+    text << "\n";
+  }
+  return text.str();
+}
+
 TEST(CoincidentFaces, OfSolidsThatTouchStayAndOthersAreNotTouched) {
-  const auto box = [](int first, double z) {
-    std::string text;
-    for (const double at : {z, z + 1.0}) {
-      const std::string height = " " + std::to_string(at) + "\n";
-      text += "v 0 0" + height + "v 1 0" + height + "v 1 1" + height + "v 0 1" + height;
-    }
-    for (const auto& face :
-         {std::array{4, 3, 2, 1}, std::array{5, 6, 7, 8}, std::array{1, 2, 6, 5},
-          std::array{2, 3, 7, 6}, std::array{3, 4, 8, 7}, std::array{4, 1, 5, 8}}) {
-      text += "f";
-      for (const int corner : face) text += " " + std::to_string(corner + first);
-      text += "\n";
-    }
-    return text;
-  };
-  const GltfModel touching = model_of("o a\n" + box(0, 0.0) + "o b\n" + box(8, 1.0));
+  const GltfModel touching = separated(model_of("o a\n" + box(0, 0.0) + "o b\n" + box(8, 1.0)));
   EXPECT_THAT(about_coincidence(touching), IsEmpty());
   for (const Mesh& mesh : touching.scene.meshes) EXPECT_EQ(mesh.vertices_m.size(), 8u);
   // Neighbours in one plane, and sheets a millimetre apart.
-  EXPECT_THAT(
-      about_coincidence(model_of(unit_square + "v 1.5 -0.5 0\nv 1.5 0.5 0\no a\nf 1 2 3 4\nf 2 5 "
-                                               "6 3\no b\nv 0 0 0.001\nv 1 0 0.001\nv 0 1 "
-                                               "0.001\nf 7 8 9\n")),
-      IsEmpty());
+  EXPECT_THAT(about_coincidence(separated(
+                  model_of(unit_square + "v 1.5 -0.5 0\nv 1.5 0.5 0\no a\nf 1 2 3 4\nf 2 5 "
+                                         "6 3\no b\nv 0 0 0.001\nv 1 0 0.001\nv 0 1 "
+                                         "0.001\nf 7 8 9\n"))),
+              IsEmpty());
+}
+
+// Two squares side by side, black. Folded about their common edge by a joint they are one sheet of
+// 1 m²; drawn folded and opened by the joint, they are two that do not coincide.
+TEST(CoincidentFaces, AreFoundAfterTheJointsHaveTurned) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / "folded";
+  std::filesystem::create_directories(folder);
+  const auto experiment = [&](const std::string& second, const char* angle_deg) {
+    std::ofstream(folder / "sheets.obj")
+        << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no a\nf 1 2 3 4\no b\n"
+        << second;
+    return resolve_experiment(read_experiment_text(
+        folder / "sheets.toml",
+        std::string(
+            "[scene]\nfile = \"sheets.obj\"\nunit = \"m\"\n[[source]]\nkind = \"sun\"\n"
+            "direction = [0, 0, -1]\n[[joint]]\nnode = \"b\"\naxis = [0, 1, 0]\nangle_deg = ") +
+            angle_deg));
+  };
+  const Experiment folded = experiment("v -1 0 0\nv 0 0 0\nv 0 1 0\nv -1 1 0\nf 5 6 7 8\n", "180");
+  EXPECT_NEAR(pushed_m2(black(folded.scene), {0, 0, -1}), 1.0, 1e-5);
+  const Experiment opened = experiment("f 4 3 2 1\n", "180");
+  EXPECT_NEAR(pushed_m2(black(opened.scene), {0, 0, -1}), 2.0, 1e-5);
+  const auto coincide = [](const Experiment& one) {
+    return std::ranges::count_if(one.notices, [](const std::string& line) {
+      return line.find("coincide") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(coincide(folded), 1);
+  EXPECT_EQ(coincide(opened), 0);
 }
 
 // A mesh that two instances share is moved in one of them alone.
@@ -379,7 +424,7 @@ TEST(CoincidentFaces, AFoldedRadiatorDrawnFromBothSidesHasItsArea) {
         << "f " << a + 2 << " " << a + 3 << " " << a + 1 << "\n"
         << "f " << a + 2 << " " << a + 1 << " " << a << "\n";
   }
-  const Scene scene = black(model_of(obj.str()).scene);
+  const Scene scene = black(separated(model_of(obj.str())).scene);
   for (const Vec3& travel : {Vec3(0, 0, -1), Vec3(0, 0, 1)}) {
     EXPECT_NEAR(pushed_m2(scene, travel), 19.05 * 2.4, 1e-4 * 19.05 * 2.4) << travel.z();
     const Estimate met = met_m2(scene, travel);
@@ -393,7 +438,7 @@ class Silhouettes : public ::testing::TestWithParam<const char*> {};
 TEST_P(Silhouettes, OfModelsOfThirdPartiesAreThoseOfARasteriser) {
   const std::string file = std::string("models/") + GetParam();
   PHOTORQUE_NEEDS_THIRD_PARTY(file);
-  const Scene scene = black(read_gltf(outside::third_party(file)).scene);
+  const Scene scene = black(separated(read_gltf(outside::third_party(file))).scene);
   constexpr size_t most_by_quadrature = 5000;
   size_t triangles = 0;
   for (const Instance& part : scene.instances)
