@@ -258,6 +258,7 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
       lab_from_body_at(experiment.file.attitude.tilt_rad, experiment.file.attitude.heading_rad);
   experiment.camera = camera;
   experiment.flow = std::move(flow);
+  open_chambers(experiment.scene, experiment.beams, experiment.lab_from_body);
   experiment.warnings =
       geometry_warnings(experiment.scene, experiment.beams, experiment.lab_from_body);
   experiment.notices = std::move(model.notices);
