@@ -125,7 +125,7 @@ class TextReader {
     ++word_;
   }
 
-  // Whether the next word ends a block, as in "endloop" or "end loop".
+  // Whether the next word ends a block of this kind; it may be written as two words.
   bool ends(const std::string& block) {
     return is_next("end" + block) ||
            (is_next("end") && word_ + 1 < words_.size() && same_word(words_[word_ + 1], block));
