@@ -1,7 +1,8 @@
 #include "receivers/inside_light.h"
 
 #include <algorithm>
-#include <sstream>
+
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {
@@ -73,21 +74,25 @@ std::string describe_inside_light(const Scene& scene,
   // A few of ten million rays may leak exactly at an edge; this fraction is ignored.
   constexpr double rounding = 1e-6;
   constexpr size_t max_named = 3;
-  std::ostringstream line;
-  line.precision(2);
+  const auto percent = [&](double power_W) {
+    const double value = 100.0 * power_W / emitted_W;
+    return value < 10.0 ? printed("%.2g", value) : printed("%.0f", value);
+  };
   double inside_W = 0.0;
   for (const auto& part : lit) inside_W += part.inside_W.value;
   if (inside_W <= rounding * emitted_W) return "";
-  line << 100.0 * inside_W / emitted_W << " % of the light falls on the inside of closed parts: ";
+  std::string line = percent(inside_W) + " % of the light falls on the inside of closed parts: ";
   for (size_t i = 0; i < std::min(lit.size(), max_named); ++i) {
     const bool turned = lit[i].inside_W.value > lit[i].outside_W.value;
-    line << (i > 0 ? ", " : "") << scene.instances[lit[i].instance].path << " ("
-         << 100.0 * lit[i].inside_W.value / emitted_W << " %, "
-         << (turned ? "its triangles are turned inside out or a lamp stands in it" : "by cracks")
-         << ")";
+    line += (i > 0 ? ", " : "") + scene.instances[lit[i].instance].path + " (" +
+            percent(lit[i].inside_W.value) + " %, " +
+            (turned ? "its triangles are turned inside out or a lamp stands in it" : "by cracks") +
+            ")";
   }
-  if (lit.size() > max_named) line << " and " << lit.size() - max_named << " more";
-  return line.str();
+  if (lit.size() > max_named) {
+    line += " and " + std::to_string(lit.size() - max_named) + " more";
+  }
+  return line;
 }
 
 }  // namespace photorque

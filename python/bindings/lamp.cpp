@@ -12,6 +12,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/provenance.h"
+#include "sources/lamps/settings.h"
 
 namespace photorque::python {
 namespace {
@@ -221,7 +222,7 @@ LampHandle make_lamp(const py::function& emit, double power_W, double wavelength
     throw InputError({}, direction.is_none() ? "lamp.aim_m" : "lamp.direction", "no direction",
                      "a vector that is not zero");
   }
-  lamp.lab_from_emitter = frame_looking_along(towards, at_m);
+  lamp.lab_from_emitter = lamp_frame(towards, at_m);
   return lamp;
 }
 
@@ -232,7 +233,9 @@ void bind_lamp(py::module_& module) {
       module, "Lamp",
       "A lamp to try out, whose rays a Python function gives.\n\n"
       "emit(points): points of shape (n, 4), even in (0, 1)⁴, become (origin_m, direction), both "
-      "(n, 3), in the lamp's own axes: z along its beam, origin at its place. Each ray carries an "
+      "(n, 3), in the lamp's own axes: z along its beam, origin at its place; x along lab x and y "
+      "along lab −y if the beam points straight down, and rotated by the shortest rotation from "
+      "there for any other beam. Each ray carries an "
       "equal part of power_W. It must depend on nothing but its points, and neighbouring points "
       "should give neighbouring rays: the first two choose the place, the others the direction. "
       "Slow: every 256 rays take the interpreter's lock; a lamp that stays belongs into the "

@@ -89,7 +89,8 @@ class TextReader {
     while (has_word()) {
       if (is_next("solid")) {
         begin();
-      } else if (is_next("endsolid")) {
+      } else if (ends("solid")) {
+        if (is_next("end")) ++word_;
         end();
         read_name(false);
       } else if (is_next("facet")) {
@@ -122,6 +123,17 @@ class TextReader {
   void expect(const char* keyword) {
     if (!is_next(keyword)) throw wrong(keyword);
     ++word_;
+  }
+
+  // Whether the next word ends a block of this kind; it may be written as two words.
+  bool ends(const std::string& block) {
+    return is_next("end" + block) ||
+           (is_next("end") && word_ + 1 < words_.size() && same_word(words_[word_ + 1], block));
+  }
+
+  void expect_end(const std::string& block) {
+    if (!ends(block)) throw wrong("end" + block);
+    word_ += is_next("end") ? 2 : 1;
   }
 
   // Whether a word on this line begins a facet instead of belonging to a name.
@@ -160,7 +172,7 @@ class TextReader {
     expect("vertex");
     Vec3 at;
     for (int k = 0; k < 3; ++k, ++word_) {
-      if (!has_word() || is_next("vertex") || is_next("endloop")) {
+      if (!has_word() || is_next("vertex") || ends("loop")) {
         throw InputError(where_, "vertex", std::to_string(k) + " values", "three");
       }
       at[k] = require_number(words_[word_], where_, "vertex");
@@ -177,8 +189,8 @@ class TextReader {
     expect("loop");
     std::array<uint32_t, 3> triangle{};
     for (uint32_t& corner : triangle) corner = pool_->add(read_corner());
-    expect("endloop");
-    expect("endfacet");
+    expect_end("loop");
+    expect_end("facet");
     if (++triangles_ > most_triangles) {
       throw InputError(where_, "facets", "more", "at most " + std::to_string(most_triangles));
     }
@@ -218,7 +230,8 @@ bool is_other_text(std::string_view bytes) {
 std::vector<Part> read_stl(std::string_view bytes, const std::string& file,
                            const std::string& name) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
+  if (bytes.starts_with(byte_order_mark) && !has_binary_length(bytes))
+    bytes.remove_prefix(byte_order_mark.size());
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
     throw InputError({file}, "", "text in UTF-16", "text in ASCII or UTF-8, or binary STL");
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "core/constants.h"
 #include "core/text/format.h"
@@ -11,6 +12,7 @@ namespace photorque {
 namespace {
 
 constexpr size_t max_named = 3;
+constexpr double inside = 0.75;  // winding number, with a margin for rounding
 
 // Winding number of a closed surface about a point: 1 inside, 0 outside, 1/2 on a face. It is the
 // sum of the solid angles of its triangles divided by 4π.
@@ -40,12 +42,14 @@ bool is_opaque(const Scene& scene, const Instance& instance) {
          !lets_through(scene.surfaces[instance.back_surface]);
 }
 
-void add_lamps_inside(const Scene& scene, std::span<const Beam> beams,
-                      const RigidTransform& lab_from_body, std::vector<std::string>& lines) {
-  constexpr double inside = 0.75;
-  size_t triangles_left = 100'000'000, named = 0;
+// Calls `found` with each closed opaque part and each lamp inside of it.
+template <class Found>
+void find_lamps_inside(const Scene& scene, std::span<const Beam> beams,
+                       const RigidTransform& lab_from_body, const Found& found) {
+  size_t triangles_left = 100'000'000;
   const RigidTransform body_from_lab = lab_from_body.inverse();
-  for (const Instance& instance : scene.instances) {
+  for (uint32_t part = 0; part < scene.instances.size(); ++part) {
+    const Instance& instance = scene.instances[part];
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (!mesh.encloses || !is_opaque(scene, instance)) continue;
     const Eigen::AlignedBox3d box = scene.box_of(instance);
@@ -53,11 +57,34 @@ void add_lamps_inside(const Scene& scene, std::span<const Beam> beams,
       const Vec3 at_m = body_from_lab.point(beam.lab_from_emitter.translation_m);
       if (!box.contains(at_m) || mesh.triangles.size() > triangles_left) continue;
       triangles_left -= mesh.triangles.size();
-      if (winding(scene, instance, at_m) < inside || named++ >= max_named) continue;
-      lines.push_back("the lamp " + beam.name + " stands inside the closed part " + instance.path +
-                      ", and its light stays there");
+      if (winding(scene, instance, at_m) >= inside) found(part, beam);
     }
   }
+}
+
+// Whether a part encloses all others, of which there are some. A point of each is tested.
+bool is_chamber(const Scene& scene, uint32_t part) {
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& other = scene.instances[i];
+    const Mesh& mesh = scene.meshes[other.mesh];
+    if (i == part || mesh.triangles.empty()) continue;
+    const auto& [a, b, c] = mesh.triangles.front();
+    const Vec3 centre_m = (mesh.vertices_m[a] + mesh.vertices_m[b] + mesh.vertices_m[c]) / 3.0;
+    if (winding(scene, scene.instances[part], other.body_from_mesh * centre_m) < inside) {
+      return false;
+    }
+  }
+  return scene.instances.size() > 1;
+}
+
+void add_lamps_inside(const Scene& scene, std::span<const Beam> beams,
+                      const RigidTransform& lab_from_body, std::vector<std::string>& lines) {
+  size_t named = 0;
+  find_lamps_inside(scene, beams, lab_from_body, [&](uint32_t part, const Beam& beam) {
+    if (named++ >= max_named) return;
+    lines.push_back("the lamp " + beam.name + " stands inside the closed part " +
+                    scene.instances[part].path + ", and its light stays there");
+  });
 }
 
 void add_unresolved_parts(const Scene& scene, std::vector<std::string>& lines) {
@@ -85,6 +112,14 @@ void add_unresolved_parts(const Scene& scene, std::vector<std::string>& lines) {
 }
 
 }  // namespace
+
+void open_chambers(Scene& scene, std::span<const Beam> beams, const RigidTransform& lab_from_body) {
+  std::set<uint32_t> chambers;
+  find_lamps_inside(scene, beams, lab_from_body, [&](uint32_t part, const Beam&) {
+    if (is_chamber(scene, part)) chambers.insert(scene.instances[part].mesh);
+  });
+  for (const uint32_t mesh : chambers) scene.meshes[mesh].encloses = false;
+}
 
 std::vector<std::string> geometry_warnings(const Scene& scene, std::span<const Beam> beams,
                                            const RigidTransform& lab_from_body) {

@@ -12,6 +12,7 @@
 #include "receivers/kind.h"
 #include "scenes/experiment/doubts.h"
 #include "scenes/experiment/keys.h"
+#include "scenes/gltf/coincident.h"
 #include "scenes/gltf/lights.h"
 #include "scenes/gltf/reader.h"
 #include "sources/lamps/kind.h"
@@ -238,6 +239,9 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
   GltfModel model = read_model(file, picture);
   require_triangles(model.scene, *file.scene_file);
   turn_joints(model.scene, file.joints, file.joint_tables);
+  for (std::string& line : separate_coincident_faces(model.scene)) {
+    model.notices.push_back(std::move(line));
+  }
 
   std::vector<Beam> beams = make_beams(file, model);
   std::vector<NamedReceiver> receivers = make_receivers(file, model.scene);
@@ -254,6 +258,7 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
       lab_from_body_at(experiment.file.attitude.tilt_rad, experiment.file.attitude.heading_rad);
   experiment.camera = camera;
   experiment.flow = std::move(flow);
+  open_chambers(experiment.scene, experiment.beams, experiment.lab_from_body);
   experiment.warnings =
       geometry_warnings(experiment.scene, experiment.beams, experiment.lab_from_body);
   experiment.notices = std::move(model.notices);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <set>
 
 #include "core/constants.h"
@@ -86,6 +87,18 @@ Joint read_joint(const Settings& table) {
   return joint;
 }
 
+// Rotates the axis of the slope errors on one side of a part.
+void turn_axis(Scene& scene, uint32_t& surface, const Quat& turn) {
+  const auto& bsdf = scene.surfaces[surface].bsdf;
+  if (!bsdf || bsdf->axis.isZero(0.0)) return;
+  OpticalSurface turned = scene.surfaces[surface];
+  Bsdf with_axis = *bsdf;
+  with_axis.axis = turn * with_axis.axis;
+  turned.bsdf = std::make_shared<const Bsdf>(std::move(with_axis));
+  scene.surfaces.push_back(std::move(turned));
+  surface = static_cast<uint32_t>(scene.surfaces.size() - 1);
+}
+
 std::string nodes_of(const Scene& scene, const std::string& wanted) {
   std::set<std::string> names;
   for (const Instance& instance : scene.instances) names.insert(instance.node);
@@ -150,6 +163,7 @@ void turn_joints(Scene& scene, const std::vector<Joint>& joints,
   std::set<uint32_t> turned;
   for (size_t j = 0; j < joints.size(); ++j) {
     const Joint& joint = joints[j];
+    const Quat rotation(Eigen::AngleAxisd(joint.angle_rad, joint.axis));
     Affine turn = Affine::Identity();
     turn.translate(joint.point_m);
     turn.rotate(Eigen::AngleAxisd(joint.angle_rad, joint.axis));
@@ -169,6 +183,8 @@ void turn_joints(Scene& scene, const std::vector<Joint>& joints,
         if (joint.angle_rad == 0.0) continue;
         Instance& instance = scene.instances[part];
         instance.body_from_mesh = turn * instance.body_from_mesh;
+        turn_axis(scene, instance.front_surface, rotation);
+        turn_axis(scene, instance.back_surface, rotation);
       }
     }
   }

@@ -11,6 +11,7 @@
 #include "core/transform.h"
 #include "scenes/gltf/nodes.h"
 #include "scenes/gltf/validation.h"
+#include "sources/lamps/settings.h"
 
 namespace photorque {
 namespace {
@@ -110,7 +111,7 @@ Vec3 turned(const Vec3& file) {
 
 // Rotation angle [rad] of a lamp about its `direction` that turns its x axis to `across`.
 double turn_towards(const Vec3& direction, const Vec3& across) {
-  const RigidTransform lab_from_lamp = frame_looking_along(direction, Vec3::Zero());
+  const RigidTransform lab_from_lamp = lamp_frame(direction, Vec3::Zero());
   const Vec3 seen = lab_from_lamp.rotation.conjugate() * across;
   return std::atan2(seen.y(), seen.x());
 }

@@ -9,7 +9,6 @@
 #include "core/files.h"
 #include "core/provenance.h"
 #include "core/text/format.h"
-#include "scenes/gltf/coincident.h"
 #include "scenes/gltf/geometry.h"
 #include "scenes/gltf/mesh_closure.h"
 #include "scenes/gltf/nodes.h"
@@ -72,9 +71,6 @@ class Assembly {
     add_notices(closure);
     if (options_.picture) apply_pictures();
     check_resolution();
-    for (std::string& line : separate_coincident_faces(model_.scene)) {
-      model_.notices.push_back(std::move(line));
-    }
     return std::move(model_);
   }
 

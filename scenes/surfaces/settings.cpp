@@ -51,7 +51,8 @@ constexpr ChoiceKey slope_error_shape(
     0, "distribution of the slopes");
 constexpr Vec3Key slope_error_axis("slope_error_axis",
                                    "with two sizes: the first one acts along the projection of "
-                                   "this direction onto the surface, body axes",
+                                   "this direction onto the surface, body axes; "
+                                   "it rotates with a `[[joint]]`",
                                    {.optional = true});
 constexpr NumberKey refractive_index(
     "refractive_index", {1.0, 10.0},

@@ -145,8 +145,7 @@ std::vector<Vec3> read_layout(const Settings& settings, Layout layout) {
 // does not rotate about its normal.
 RigidTransform panel_frame(const Vec3& normal, const Vec3& centre_m) {
   if (!(normal.z() < 0.0)) return frame_looking_along(normal, centre_m);
-  const Quat half_turn(0.0, 1.0, 0.0, 0.0);
-  return {rotation_between(-Vec3::UnitZ(), normal) * half_turn, centre_m};
+  return lamp_frame(normal, centre_m);
 }
 
 struct Placement {

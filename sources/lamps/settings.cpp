@@ -52,7 +52,9 @@ constexpr Vec3sKey positions("positions_m",
                              "positions of several equal lamps, lab axes, instead of `position_m`",
                              {.optional = true});
 constexpr NumberKey turn("turn_deg", 0.0, {},
-                         "rotation about the beam, right-handed about its direction");
+                         "rotation about the beam, right-handed about its direction. At 0, C0 is "
+                         "along lab x for a beam straight down; for other beams the lamp is "
+                         "rotated by the shortest rotation from there");
 }  // namespace place_key
 
 namespace sunlight_key {
@@ -198,6 +200,13 @@ SourceFile read_source_file(const Settings& settings, const SourceContext& conte
   return file;
 }
 
+RigidTransform lamp_frame(const Vec3& direction, const Vec3& origin_m) {
+  const Vec3 z = direction.normalized();
+  if (z.z() > 1.0 - 1e-12) return {rotation_between(Vec3::UnitZ(), z), origin_m};
+  const Quat half_turn(0.0, 1.0, 0.0, 0.0);
+  return {(rotation_between(-Vec3::UnitZ(), z) * half_turn).normalized(), origin_m};
+}
+
 std::vector<Beam> place_lamps(const Settings& settings, const std::string& name,
                               const std::shared_ptr<const Emitter>& lamp, const Spectrum& spectrum,
                               const std::optional<UniformAperture>& aperture) {
@@ -214,7 +223,7 @@ std::vector<Beam> place_lamps(const Settings& settings, const std::string& name,
   for (size_t i = 0; i < positions_m.size(); ++i) {
     const Vec3 direction = read_direction(settings, positions_m[i]);
     beams.push_back({several ? name + "[" + std::to_string(i) + "]" : name, lamp,
-                     frame_looking_along(direction, positions_m[i]) * turn, spectrum, aperture});
+                     lamp_frame(direction, positions_m[i]) * turn, spectrum, aperture});
   }
   return beams;
 }

@@ -56,9 +56,15 @@ struct SourceFile {
 };
 SourceFile read_source_file(const Settings& settings, const SourceContext& context);
 
+// Frame of a lamp whose beam, its z axis, points along `direction` (any length but zero). If that
+// is straight down, x is the lab's x and y the lab's −y. For other directions this frame is rotated
+// by the shortest rotation from straight down. It depends continuously on the direction except at
+// straight up, where it is the lab's frame.
+RigidTransform lamp_frame(const Vec3& direction, const Vec3& origin_m);
+
 // One lamp at position_m called `name`, or equal lamps at each of positions_m called name[0],
-// name[1], … Each points along `direction` or at aim_m and is rotated by turn_deg (default 0) about
-// its beam. `aperture` as in Beam.
+// name[1], … Each points along `direction` or at aim_m, as in lamp_frame(), and is rotated by
+// turn_deg (default 0) about its beam. `aperture` as in Beam.
 std::vector<Beam> place_lamps(const Settings& settings, const std::string& name,
                               const std::shared_ptr<const Emitter>& lamp, const Spectrum& spectrum,
                               const std::optional<UniformAperture>& aperture = std::nullopt);

@@ -85,7 +85,7 @@ IntensityTable unfold(const StoredPlanes& stored, PlaneSymmetry symmetry,
 // Tables of types A (pole `vertical`) and B (`horizontal`): latitude and longitude about an axis
 // across the beam, which is at H = V = 0. H counts clockwise seen from above (LM-63-2002,
 // definitions). From the beam, V increases towards the emitter's x and H towards its y: upwards and
-// to the right for a horizontal beam of type A. Angles that start at 0 are mirrored to both sides.
+// to the right for a beam along lab x. Angles that start at 0 are mirrored to both sides.
 // Throws InputError at `where` for angles outside the sphere's range.
 IntensityTable sideways_table(Pole pole, const StoredPlanes& stored, const InputLocation& where);
 

@@ -78,6 +78,9 @@ TEST(InsideLight, ReportsABodyThatIsInsideOut) {
   EXPECT_NEAR(box.lit[0].inside_W.value, 1.0, 5 * box.lit[0].inside_W.standard_error);
   EXPECT_THAT(describe_inside_light(box.scene, box.lit, 4.0),
               ::testing::HasSubstr("turned inside out"));
+  std::vector<InsideLightReceiver::Part> all = box.lit;
+  all[0].inside_W.value = 4.0;
+  EXPECT_THAT(describe_inside_light(box.scene, all, 4.0), ::testing::StartsWith("100 % of the"));
 }
 
 TEST(InsideLight, GlassAndSheetsAreNotWatched) {

@@ -132,9 +132,15 @@ TEST(Stl, DialectsOfTextAreTheSameSquare) {
   for (size_t at = 0; (at = named.find("square", at)) != std::string::npos; at += 6) {
     named.replace(at, 6, "facet plate endsolid");
   }
+  std::string two_words = plain;
+  for (const std::string block : {"loop", "facet", "solid"}) {
+    for (size_t at = 0; (at = two_words.find("end" + block, at)) != std::string::npos;) {
+      two_words.insert(at + 3, " ");
+    }
+  }
   for (const std::string& text :
-       {plain, upper, one_line, "\xEF\xBB\xBF" + plain, "\xEF\xBB\xBF" + upper, "\n " + plain,
-        carriage_returns, named, plain + "\x1A", plain + std::string(3, '\0')}) {
+       {plain, upper, one_line, two_words, "\xEF\xBB\xBF" + plain, "\xEF\xBB\xBF" + upper,
+        "\n " + plain, carriage_returns, named, plain + "\x1A", plain + std::string(3, '\0')}) {
     const GltfModel model = stl(text);
     ASSERT_EQ(model.scene.meshes.size(), 1u) << text;
     EXPECT_EQ(model.scene.meshes[0].triangles.size(), 2u) << text;
@@ -150,6 +156,9 @@ TEST(Stl, ABinaryFileThatBeginsWithSolidIsBinary) {
   std::string binary = tetrahedron_stl();
   binary.replace(0, 10, "solid tetr");
   EXPECT_EQ(stl(binary).scene.meshes[0].triangles.size(), 4u);
+  std::string marked = binary;
+  marked.replace(0, 3, "\xEF\xBB\xBF");
+  EXPECT_EQ(stl(marked).scene.meshes[0].triangles.size(), 4u);
   EXPECT_THAT(refusal_of([&] { stl(binary + "xx"); }), HasSubstr("expected 84 + 50 × 4 bytes"));
 }
 

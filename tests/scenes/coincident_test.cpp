@@ -2,12 +2,16 @@
 // that a rasteriser counts, which knows neither sides nor shadows.
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
+#include <map>
 #include <sstream>
 
 #include "core/constants.h"
 #include "raytrace/tracing/tracer.h"
 #include "receivers/gather/bodies/sunlit_body.h"
 #include "scenes/cad/model.h"
+#include "scenes/experiment/experiment.h"
 #include "scenes/gltf/coincident.h"
 #include "scenes/gltf/reader.h"
 #include "tests/outside.h"
@@ -16,6 +20,7 @@
 namespace photorque::coincidence {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -38,6 +43,14 @@ Beam sun(double scene_radius_m) {
 
 GltfModel model_of(const std::string& obj) {
   return read_cad_bytes(obj, "part.obj", CadFormat::obj, {1.0});
+}
+
+// The model as an experiment uses it.
+GltfModel separated(GltfModel model) {
+  for (std::string& line : separate_coincident_faces(model.scene)) {
+    model.notices.push_back(std::move(line));
+  }
+  return model;
 }
 
 std::vector<std::string> about_coincidence(const GltfModel& model) {
@@ -151,7 +164,7 @@ TEST(CoincidentFaces, ReceiveTheLightOnce) {
                                         "v -0.5 -0.4999999 0\nf 1 2 5\no d\nf 1 2 4\n"},
   };
   for (const auto& [what, obj] : sheets) {
-    const GltfModel model = model_of(obj);
+    const GltfModel model = separated(model_of(obj));
     EXPECT_FALSE(about_coincidence(model).empty()) << what;
     const Scene scene = black(model.scene);
     for (const Vec3& towards :
@@ -177,8 +190,9 @@ TEST(CoincidentFaces, AtASlightAngleReceiveTheLightOnce) {
           tilted << "v " << axis_m + (x - axis_m) * std::cos(angle_rad) << " " << y << " "
                  << (x - axis_m) * std::sin(angle_rad) << "\n";
         }
-        const Scene scene =
-            black(model_of(unit_square + "o a\nf 1 2 3 4\n" + tilted.str() + "o b\n" + face).scene);
+        const Scene scene = black(
+            separated(model_of(unit_square + "o a\nf 1 2 3 4\n" + tilted.str() + "o b\n" + face))
+                .scene);
         for (const Vec3& travel : {Vec3(0, 0, -1), Vec3(0, 0, 1)}) {
           EXPECT_NEAR(pushed_m2(scene, travel), 1.0, 3e-4) << angle_rad << " " << axis_m << face;
         }
@@ -221,6 +235,7 @@ TEST(CoincidentFaces, ThatTransmitAreOneSheet) {
         scene.surfaces[side] = grey_surface("sheet", 0.0, 0.0, through);
       }
     }
+    separate_coincident_faces(scene);
     for (const auto& [travel, through] :
          {std::pair(Vec3(0, 0, -1), one.front), std::pair(Vec3(0, 0, 1), one.back)}) {
       const double absorbed = 1.0 - std::pow(through, one.sheets);
@@ -251,8 +266,8 @@ void expect_sides(Scene scene, double front, double back) {
 
 TEST(CoincidentFaces, BackToBackHaveTheOpticsOfTheirOwnSides) {
   for (const char* back : {"f 4 3 2 1\n", "f 3 2 1 4\n"}) {
-    const GltfModel model =
-        model_of(unit_square + "o a\nusemtl cell\nf 1 2 3 4\no b\nusemtl white\n" + back);
+    const GltfModel model = separated(
+        model_of(unit_square + "o a\nusemtl cell\nf 1 2 3 4\no b\nusemtl white\n" + back));
     EXPECT_THAT(about_coincidence(model),
                 ElementsAre(HasSubstr("4 triangles of \"a\" and \"b\" coincide back to back")));
     expect_sides(model.scene, 0.0, 1.0);
@@ -262,44 +277,294 @@ TEST(CoincidentFaces, BackToBackHaveTheOpticsOfTheirOwnSides) {
 // A foil on a panel, drawn in one plane and the same way: each side is that of the face that light
 // meets first there, and of no other.
 TEST(CoincidentFaces, AlikeHaveTheFrontOfTheFirstAndTheBackOfTheLast) {
-  const GltfModel model =
-      model_of(unit_square + "o foil\nusemtl white\nf 1 2 3 4\no panel\nusemtl black\nf 2 3 4 1\n");
+  const GltfModel model = separated(model_of(
+      unit_square + "o foil\nusemtl white\nf 1 2 3 4\no panel\nusemtl black\nf 2 3 4 1\n"));
   EXPECT_THAT(about_coincidence(model),
               ElementsAre(HasSubstr("light from the front meets only the first, of \"foil\", light "
                                     "from behind only the last, of \"panel\"")));
   expect_sides(model.scene, 1.0, 0.0);
 }
 
+// A closed box over the unit square between two heights; `first` corners precede it.
+std::string box(int first, double low, double high = NAN) {
+  std::ostringstream text;
+  text.precision(15);
+  if (std::isnan(high)) high = low + 1.0;
+  for (const double at : {low, high}) {
+    text << "v 0 0 " << at << "\nv 1 0 " << at << "\nv 1 1 " << at << "\nv 0 1 " << at << "\n";
+  }
+  for (const auto& face :
+       {std::array{4, 3, 2, 1}, std::array{5, 6, 7, 8}, std::array{1, 2, 6, 5},
+        std::array{2, 3, 7, 6}, std::array{3, 4, 8, 7}, std::array{4, 1, 5, 8}}) {
+    text << "f";
+    for (const int corner : face) text << " " << corner + first;
+    text << "\n";
+  }
+  return text.str();
+}
+
 TEST(CoincidentFaces, OfSolidsThatTouchStayAndOthersAreNotTouched) {
-  const auto box = [](int first, double z) {
-    std::string text;
-    for (const double at : {z, z + 1.0}) {
-      const std::string height = " " + std::to_string(at) + "\n";
-      text += "v 0 0" + height + "v 1 0" + height + "v 1 1" + height + "v 0 1" + height;
+  const GltfModel touching = separated(model_of("o a\n" + box(0, 0.0) + "o b\n" + box(8, 1.0)));
+  EXPECT_THAT(about_coincidence(touching), IsEmpty());
+  for (const Mesh& mesh : touching.scene.meshes) EXPECT_EQ(mesh.vertices_m.size(), 8u);
+  // Neighbours in one plane, and sheets a millimetre apart.
+  EXPECT_THAT(about_coincidence(separated(
+                  model_of(unit_square + "v 1.5 -0.5 0\nv 1.5 0.5 0\no a\nf 1 2 3 4\nf 2 5 "
+                                         "6 3\no b\nv 0 0 0.001\nv 1 0 0.001\nv 0 1 "
+                                         "0.001\nf 7 8 9\n"))),
+              IsEmpty());
+}
+
+// The optics of each part by the name of its material: fractions that are diffused and transmitted.
+using Optics = std::map<std::string, std::pair<double, double>>;
+
+Scene with_optics(Scene scene, const Optics& optics) {
+  for (const Instance& part : scene.instances) {
+    const auto [diffuse, through] = optics.at(part.material);
+    for (const uint32_t side : {part.front_surface, part.back_surface}) {
+      scene.surfaces[side] = grey_surface(part.material, 0.0, diffuse, through);
+    }
+  }
+  separate_coincident_faces(scene);
+  return scene;
+}
+
+// Light falls along z through glass that touches a panel, with fractions t and, diffuse, ρ. Where
+// both fill the square of 1 m², the panel absorbs t (1 − ρ) of it, and the force is that of the
+// panel, F = P A (1 + 2 ρ/3), for t = 1.
+TEST(CoincidentFaces, OfTransparentSolidsLetTheLightThrough) {
+  for (const double gap_m : {0.0, 1e-8, 1e-7, 5e-7, 1e-5, 1e-4}) {
+    for (const bool glass_first : {false, true}) {
+      const std::string first = glass_first ? "o glass\nusemtl glass\n" + box(0, gap_m, 0.01)
+                                            : "o panel\nusemtl panel\n" + box(0, -0.1, 0.0);
+      const std::string second = glass_first ? "o panel\nusemtl panel\n" + box(8, -0.1, 0.0)
+                                             : "o glass\nusemtl glass\n" + box(8, gap_m, 0.01);
+      const Scene scene =
+          with_optics(model_of(first + second).scene, {{"glass", {0, 1}}, {"panel", {0.5, 0}}});
+      EXPECT_NEAR(pushed_m2(scene, {0, 0, -1}), 1.0 + 0.5 * 2.0 / 3.0, 1e-4) << gap_m;
+      const Estimate met = met_m2(scene, {0, 0, -1});
+      EXPECT_NEAR(met.value, 0.5, 3.0 * met.standard_error + 1e-4) << gap_m;
+    }
+  }
+}
+
+// Glass transmits 0.9 and absorbs the rest; what passes it falls on a black face, so that all is
+// absorbed, from both sides.
+TEST(CoincidentFaces, BehindTransparentOnesAreMet) {
+  const std::string glass = "o glass\nusemtl glass\n", black = "o cell\nusemtl black\n";
+  const std::string up = "f 1 2 3 4\n", down = "f 4 3 2 1\n";
+  const std::string other_corners = "v -0.5 -0.5 0\nv 0.5 -0.5 0\nv 0.5 0.5 0\nv -0.5 0.5 0\n";
+  const std::vector<std::string> all = {
+      glass + up + black + up,
+      black + up + glass + up,
+      glass + up + black + down,
+      black + down + glass + up,
+      glass + up + up + black + up,
+      glass + up + "o film\n" + up + black + up + "o back\n" + down,
+      black + up + "o film\nusemtl glass\n" + down + glass + up,
+  };
+  for (const std::string& faces : all) {
+    const Scene scene =
+        with_optics(model_of(unit_square + faces).scene, {{"glass", {0, 0.9}}, {"black", {0, 0}}});
+    for (const Vec3& travel : {Vec3(0, 0, -1), Vec3(0, 0, 1)}) {
+      EXPECT_NEAR(pushed_m2(scene, travel), 1.0, 1e-5) << faces << travel.z();
+      const Estimate met = met_m2(scene, travel);
+      EXPECT_NEAR(met.value, 1.0, 3.0 * met.standard_error + 1e-4) << faces << travel.z();
+    }
+  }
+}
+
+// A clear box on a black sheet that looks down, in the plane of its lower face.
+TEST(CoincidentFaces, UnderAClearBoxAreMet) {
+  const Scene scene = with_optics(
+      model_of("o box\nusemtl clear\n" + box(0, 0.0) + "o sheet\nusemtl black\nf 4 3 2 1\n").scene,
+      {{"clear", {0, 1}}, {"black", {0, 0}}});
+  for (const Vec3& travel : {Vec3(0, 0, -1), Vec3(0, 0, 1)}) {
+    EXPECT_NEAR(pushed_m2(scene, travel), 1.0, 1e-4) << travel.z();
+    const Estimate met = met_m2(scene, travel);
+    EXPECT_NEAR(met.value, 1.0, 3.0 * met.standard_error + 1e-4) << travel.z();
+  }
+}
+
+// A thin plate of a closed part, far from another part: each of its faces transmits half of the
+// light, and absorbs the other half.
+TEST(CoincidentFaces, OfAThinPlateActOneAfterTheOther) {
+  for (const double thickness_m : {1e-7, 1e-6, 1e-5, 1e-4}) {
+    const Scene scene = with_optics(
+        model_of("o plate\nusemtl half\n" + box(0, 0.0, thickness_m)).scene, {{"half", {0, 0.5}}});
+    const Estimate met = met_m2(scene, {0, 0, -1});
+    EXPECT_NEAR(met.value, 0.75, 3.0 * met.standard_error + 2e-3) << thickness_m;
+  }
+}
+
+// A panel of 2 m × 1 m with black cells in its plane, turned about two axes and written as text.
+class RoundedPanel {
+ public:
+  static constexpr int along = 10, across = 5;
+  static constexpr double cell_m = 0.18;
+  // Direction of light on its front.
+  Vec3 travel() const { return -(turn_ * Vec3::UnitZ()); }
+
+  // Lengths in units of 1/scale; `decimals` of them are written, or six digits if negative.
+  RoundedPanel(double scale, int decimals) : scale_(scale) {
+    if (decimals >= 0) {
+      text_.precision(decimals);
+      text_ << std::fixed;
+    }
+  }
+
+  // A rectangle in the plane at a height, divided into cells of n × m; turned over if `down`.
+  void add(const std::string& part, const Vec2& low, const Vec2& high, double height_m, int n,
+           int m, bool down) {
+    text_ << "o " << part << "\nusemtl " << part << "\n";
+    const int first = count_ + 1;
+    for (int i = 0; i <= n; ++i) {
+      for (int j = 0; j <= m; ++j) {
+        corner({low.x() + (high.x() - low.x()) * i / n, low.y() + (high.y() - low.y()) * j / m,
+                height_m});
+      }
+    }
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < m; ++j) {
+        const int a = first + i * (m + 1) + j, b = a + m + 1;
+        if (down) {
+          text_ << "f " << a << " " << a + 1 << " " << b + 1 << " " << b << "\n";
+        } else {
+          text_ << "f " << a << " " << b << " " << b + 1 << " " << a + 1 << "\n";
+        }
+      }
+    }
+  }
+  void add_cells() {
+    for (int i = 0; i < along; ++i) {
+      for (int j = 0; j < across; ++j) {
+        const Vec2 low(-1.0 + 0.2 * i + 0.01, -0.5 + 0.2 * j + 0.01);
+        add("cells", low, low + Vec2(cell_m, cell_m), 0.0, 1, 1, false);
+      }
+    }
+  }
+  // The box below the plane.
+  void add_box() {
+    const int a = count_;
+    text_ << "o box\nusemtl box\n";
+    for (const double height_m : {-0.1, 0.0}) {
+      for (const auto& [x, y] : {std::pair(-1.0, -0.5), {1.0, -0.5}, {1.0, 0.5}, {-1.0, 0.5}}) {
+        corner({x, y, height_m});
+      }
     }
     for (const auto& face :
          {std::array{4, 3, 2, 1}, std::array{5, 6, 7, 8}, std::array{1, 2, 6, 5},
           std::array{2, 3, 7, 6}, std::array{3, 4, 8, 7}, std::array{4, 1, 5, 8}}) {
-      text += "f";
-      for (const int corner : face) text += " " + std::to_string(corner + first);
-      text += "\n";
+      text_ << "f";
+      for (const int corner : face) text_ << " " << corner + a;
+      text_ << "\n";
     }
-    return text;
+  }
+  Scene scene(const Optics& optics) const {
+    const double metres = 1.0 / scale_;
+    return with_optics(read_cad_bytes(text_.str(), "panel.obj", CadFormat::obj, {metres}).scene,
+                       optics);
+  }
+
+ private:
+  void corner(const Vec3& at_m) {
+    const Vec3 at = scale_ * (turn_ * at_m);
+    text_ << "v " << at.x() << " " << at.y() << " " << at.z() << "\n";
+    ++count_;
+  }
+
+  Quat turn_ = Quat(Eigen::AngleAxisd(0.5, Vec3::UnitZ())) *
+               Quat(Eigen::AngleAxisd(0.7, Vec3(1.0, 0.3, 0.0).normalized()));
+  double scale_;
+  int count_ = 0;
+  std::ostringstream text_;
+};
+
+// Scales and decimals: millimetres with two decimals, with six digits; metres of a panel of 0.2 m
+// with six decimals.
+const std::vector<std::pair<double, int>> roundings = {{1000.0, 2}, {1000.0, -1}, {0.1, 6}};
+
+// Black cells in the plane of a white box absorb E times their area, in either order of the file,
+// and the light on them does not depend on the rounding.
+TEST(CoincidentFaces, OfRoundedCellsLieOnTheirPanel) {
+  for (const auto& [scale, decimals] : roundings) {
+    for (const bool cells_first : {false, true}) {
+      RoundedPanel panel(scale, decimals);
+      if (cells_first) panel.add_cells();
+      panel.add_box();
+      if (!cells_first) panel.add_cells();
+      const Scene scene = panel.scene({{"cells", {0, 0}}, {"box", {1, 0}}});
+      const double cells_m2 =
+          RoundedPanel::along * RoundedPanel::across * RoundedPanel::cell_m * RoundedPanel::cell_m;
+      const Estimate met = met_m2(scene, panel.travel());
+      EXPECT_NEAR(met.value, cells_m2, 3.0 * met.standard_error + 5e-4) << scale << cells_first;
+    }
+  }
+}
+
+// A black sheet and a finer white one back to back, with rounded corners: the black side absorbs
+// all light, F = P A; the white one diffuses it, F = P A (1 + 2/3).
+TEST(CoincidentFaces, OfRoundedPanelsBackToBackHaveTheOpticsOfTheirOwnSides) {
+  for (const auto& [scale, decimals] : roundings) {
+    RoundedPanel panel(scale, decimals);
+    panel.add("front", {-1.0, -0.5}, {1.0, 0.5}, 0.0, 1, 1, false);
+    panel.add("back", {-1.0, -0.5}, {1.0, 0.5}, 0.0, 12, 7, true);
+    const Scene scene = panel.scene({{"front", {0, 0}}, {"back", {1, 0}}});
+    const Estimate met = met_m2(scene, panel.travel()), behind = met_m2(scene, -panel.travel());
+    EXPECT_NEAR(met.value, 2.0, 3.0 * met.standard_error + 1e-3) << scale;
+    EXPECT_NEAR(behind.value, 0.0, 1e-3) << scale;
+    EXPECT_NEAR(pushed_m2(scene, panel.travel()), 2.0, 1e-3) << scale;
+    EXPECT_NEAR(pushed_m2(scene, -panel.travel()), 2.0 * (1.0 + 2.0 / 3.0), 1e-3) << scale;
+  }
+}
+
+// Corners with too few digits to be found in one plane are named.
+TEST(CoincidentFaces, ThatCrossNearlyInOnePlaneAreNamed) {
+  const auto lines = [](double height_m) {
+    std::ostringstream obj;
+    obj << unit_square << "v -0.4 -0.4 " << height_m << "\nv 0.4 -0.4 " << -height_m
+        << "\nv 0.4 0.4 " << height_m << "\no a\nf 1 2 3 4\no b\nf 5 6 7\n";
+    Scene scene = model_of(obj.str()).scene;
+    return separate_coincident_faces(scene);
   };
-  const GltfModel touching = model_of("o a\n" + box(0, 0.0) + "o b\n" + box(8, 1.0));
-  EXPECT_THAT(about_coincidence(touching), IsEmpty());
-  for (const Mesh& mesh : touching.scene.meshes) EXPECT_EQ(mesh.vertices_m.size(), 8u);
-  // Neighbours in one plane, and sheets a millimetre apart.
-  EXPECT_THAT(
-      about_coincidence(model_of(unit_square + "v 1.5 -0.5 0\nv 1.5 0.5 0\no a\nf 1 2 3 4\nf 2 5 "
-                                               "6 3\no b\nv 0 0 0.001\nv 1 0 0.001\nv 0 1 "
-                                               "0.001\nf 7 8 9\n")),
-      IsEmpty());
+  EXPECT_THAT(lines(5e-5), Contains(HasSubstr("\"a\" and \"b\" cross each other within")));
+  EXPECT_THAT(lines(1e-5), ElementsAre(HasSubstr("coincide")));
+  EXPECT_THAT(lines(1e-3), IsEmpty());
+}
+
+// Two squares side by side, black. Folded about their common edge by a joint they are one sheet of
+// 1 m²; drawn folded and opened by the joint, they are two that do not coincide.
+TEST(CoincidentFaces, AreFoundAfterTheJointsHaveTurned) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / "folded";
+  std::filesystem::create_directories(folder);
+  const auto experiment = [&](const std::string& second, const char* angle_deg) {
+    std::ofstream(folder / "sheets.obj")
+        << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no a\nf 1 2 3 4\no b\n"
+        << second;
+    return resolve_experiment(read_experiment_text(
+        folder / "sheets.toml",
+        std::string(
+            "[scene]\nfile = \"sheets.obj\"\nunit = \"m\"\n[[source]]\nkind = \"sun\"\n"
+            "direction = [0, 0, -1]\n[[joint]]\nnode = \"b\"\naxis = [0, 1, 0]\nangle_deg = ") +
+            angle_deg));
+  };
+  const Experiment folded = experiment("v -1 0 0\nv 0 0 0\nv 0 1 0\nv -1 1 0\nf 5 6 7 8\n", "180");
+  EXPECT_NEAR(pushed_m2(black(folded.scene), {0, 0, -1}), 1.0, 1e-5);
+  const Experiment opened = experiment("f 4 3 2 1\n", "180");
+  EXPECT_NEAR(pushed_m2(black(opened.scene), {0, 0, -1}), 2.0, 1e-5);
+  const auto coincide = [](const Experiment& one) {
+    return std::ranges::count_if(one.notices, [](const std::string& line) {
+      return line.find("coincide") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(coincide(folded), 1);
+  EXPECT_EQ(coincide(opened), 0);
 }
 
 // A mesh that two instances share is moved in one of them alone.
 TEST(CoincidentFaces, MoveTheInstanceThatLiesInAnother) {
   Scene scene;
+  scene.surfaces.push_back(grey_surface("black", 0.0, 0.0));
   Mesh sheet;
   sheet.vertices_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   sheet.triangles = {{0, 1, 2}};
@@ -379,7 +644,7 @@ TEST(CoincidentFaces, AFoldedRadiatorDrawnFromBothSidesHasItsArea) {
         << "f " << a + 2 << " " << a + 3 << " " << a + 1 << "\n"
         << "f " << a + 2 << " " << a + 1 << " " << a << "\n";
   }
-  const Scene scene = black(model_of(obj.str()).scene);
+  const Scene scene = black(separated(model_of(obj.str())).scene);
   for (const Vec3& travel : {Vec3(0, 0, -1), Vec3(0, 0, 1)}) {
     EXPECT_NEAR(pushed_m2(scene, travel), 19.05 * 2.4, 1e-4 * 19.05 * 2.4) << travel.z();
     const Estimate met = met_m2(scene, travel);
@@ -393,7 +658,7 @@ class Silhouettes : public ::testing::TestWithParam<const char*> {};
 TEST_P(Silhouettes, OfModelsOfThirdPartiesAreThoseOfARasteriser) {
   const std::string file = std::string("models/") + GetParam();
   PHOTORQUE_NEEDS_THIRD_PARTY(file);
-  const Scene scene = black(read_gltf(outside::third_party(file)).scene);
+  const Scene scene = black(separated(read_gltf(outside::third_party(file))).scene);
   constexpr size_t most_by_quadrature = 5000;
   size_t triangles = 0;
   for (const Instance& part : scene.instances)

@@ -71,6 +71,23 @@ TEST(Doubts, NameLampsInsideClosedParts) {
             1u);
 }
 
+// A lamp and a sheet in a closed chamber are an experiment; a lamp in a body with an arm outside is
+// a mistake.
+TEST(Doubts, AllowLampsInChambers) {
+  Mesh arm = square_mesh();
+  for (Vec3& vertex : arm.vertices_m) vertex += Vec3(0, 0, 1);  // on the lid
+  const std::vector<Beam> inside = {lamp_at({0.3, -0.9, 0.5})};
+  for (const bool is_chamber : {true, false}) {
+    Scene scene = scene_of({square_mesh(), cube(), is_chamber ? square_mesh() : arm});
+    open_chambers(scene, inside, {});
+    EXPECT_EQ(scene.meshes[1].encloses, !is_chamber);
+    EXPECT_EQ(geometry_warnings(scene, inside, {}).size(), is_chamber ? 0u : 1u);
+    Scene dark = scene_of({square_mesh(), cube()});
+    open_chambers(dark, std::vector<Beam>{lamp_at({0, 0, 5})}, {});
+    EXPECT_TRUE(dark.meshes[1].encloses);
+  }
+}
+
 TEST(Doubts, NamePartsThatSinglePrecisionDoesNotResolve) {
   Mesh tiny = square_mesh();
   for (Vec3& vertex : tiny.vertices_m) vertex = 1e-6 * vertex + Vec3(0, 0, 5);

@@ -42,6 +42,24 @@ TEST(Joints, TurnTheirPartsAndNothingElse) {
   EXPECT_EQ(moved, 4u);
 }
 
+// A quarter turn about z takes x to y.
+TEST(Joints, TurnTheAxesOfSlopeErrors) {
+  const std::string overrides[] = {
+      "material=[{name=\"solar_cell\", specular=1, slope_error_mrad=[5, 1], slope_error_axis=[1, "
+      "0, 0]}]",
+      "joint=[{node=\"panel_1\", axis=[0, 0, 1], angle_deg=90}]"};
+  const Experiment turned = resolve_experiment(read_experiment_file(spacecraft, overrides));
+  size_t with_axis = 0;
+  for (const Instance& part : turned.scene.instances) {
+    const auto& bsdf = turned.scene.surface(part, true).bsdf;
+    if (!bsdf || bsdf->axis.isZero(0.0)) continue;
+    ++with_axis;
+    const bool of_wing = part.path.find("panel_1") != std::string::npos;
+    EXPECT_LT((bsdf->axis - (of_wing ? Vec3::UnitY() : Vec3::UnitX())).norm(), 1e-12) << part.path;
+  }
+  EXPECT_GE(with_axis, 2u);
+}
+
 // The angle about y that lets +z look at a Sun in the plane of x and z is the Sun's own.
 TEST(Joints, FollowTheSunAsNearAsTheirAxisLetsThem) {
   Joint joint;

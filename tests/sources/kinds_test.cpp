@@ -24,6 +24,35 @@ TEST(EverySource, HasANameASummaryAndAReadableExample) {
   }
 }
 
+// Kinds whose light depends on the azimuth about the beam. By Rodrigues' formula, a rotation by θ
+// from straight down towards the azimuth φ takes lab x to
+// (cos θ + (1 − cos θ) sin²φ, −(1 − cos θ) sin φ cos φ, sin θ cos φ).
+TEST(EverySource, OfAFileTurnsWithItsBeamFromStraightDown) {
+  for (const char* name : {"ies", "ray_file"}) {
+    const SourceKind kind = test::kind_called(name);
+    const auto x_of = [&](const Vec3& beam, double turn_deg) {
+      const SettingsNode::Table keys =
+          test::changed(kind.example,
+                        {{"position_m", test::vector_node(-beam.x(), -beam.y(), -beam.z())},
+                         {"aim_m", test::vector_node(0, 0, 0)},
+                         {"turn_deg", {turn_deg}}},
+                        {"direction"});
+      const std::vector<Beam> beams = kind.make(settings_of(keys), test::with_files());
+      return beams.front().lab_from_emitter.direction(Vec3::UnitX());
+    };
+    for (const double azimuth_rad : {0.0, 0.4, 0.5 * pi, 2.5, 5.0}) {
+      const double c = std::cos(azimuth_rad), s = std::sin(azimuth_rad);
+      for (const double tilt_rad : {0.0, 1e-4, 0.5, 0.5 * pi, 3.0}) {
+        const Vec3 beam(std::sin(tilt_rad) * c, std::sin(tilt_rad) * s, -std::cos(tilt_rad));
+        const double rest = 1.0 - std::cos(tilt_rad);
+        const Vec3 x(std::cos(tilt_rad) + rest * s * s, -rest * s * c, std::sin(tilt_rad) * c);
+        EXPECT_LT((x_of(beam, 0.0) - x).norm(), 1e-9) << name << tilt_rad << azimuth_rad;
+      }
+      EXPECT_LT((x_of({c, s, 0.0}, -azimuth_rad / deg) - Vec3::UnitZ()).norm(), 1e-9) << name;
+    }
+  }
+}
+
 TEST(EverySource, TakesItsNameFromTheUser) {
   for (const SourceKind& kind : all_source_kinds()) {
     for (const Beam& beam :

@@ -94,6 +94,47 @@ TEST_F(OpticalTruth, SunlightOnAMillimetreTenKilometresAwayIsRight) {
   EXPECT_THAT(map.out + map.err, Not(HasSubstr("WARNING")));
 }
 
+// The Sun sends 1000 W/m² · 40,000 m² in 4096 rays. None of them meets a plate of 1 cm², which then
+// receives at most 3/4096 of the power, by the rule of three.
+// Source: J. A. Hanley and A. Lippman-Hand, JAMA 249 (1983) 1743.
+TEST_F(OpticalTruth, AReceiverThatNoRayMetHasALimit) {
+  write("far.obj",
+        "v -100 -100 0\nv 100 -100 0\nv 100 100 0\nv -100 100 0\no field\nf 1 2 3 4\n"
+        "v 0.3 0.3 1\nv 0.31 0.3 1\nv 0.31 0.31 1\nv 0.3 0.31 1\no small\nf 5 6 7 8\n");
+  const std::string file = write(
+      "far.toml",
+      "[scene]\nfile = \"far.obj\"\nunit = \"m\"\n[[source]]\nkind = \"sun\"\ndirection = [0, 0, "
+      "-1]\nirradiance_W_m2 = 1000\nangular_radius_deg = 0\n[[receiver]]\nnode = \"small\"\nbins "
+      "= [1, 1]\n[trace]\nrays = 4096\ndirect = \"rays\"\n");
+  const Outcome traced = succeed("trace " + file + " --out " + at("o"));
+  EXPECT_THAT(traced.out, HasSubstr("no ray met it: at most about 29300 W"));
+}
+
+// A plate of 1 m² in a closed chamber that a lamp lights from the inside.
+TEST_F(OpticalTruth, AChamberAroundALampRaisesNoWarning) {
+  std::string corners, faces = "o chamber\n";
+  for (int i = 0; i < 8; ++i) {
+    corners += std::string("v ") + (i & 1 ? "2 " : "-2 ") + (i & 2 ? "2 " : "-2 ") +
+               (i & 4 ? "3\n" : "-1\n");
+  }
+  for (const char* face :
+       {"5 7 8 6", "9 10 12 11", "5 6 10 9", "7 11 12 8", "5 9 11 7", "6 8 12 10"}) {
+    faces += "f " + std::string(face) + "\n";
+  }
+  write("chamber.obj", "v -0.5 -0.5 0\nv 0.5 -0.5 0\nv 0.5 0.5 0\nv -0.5 0.5 0\n" + corners +
+                           "o plate\nf 1 2 3 4\n" + faces);
+  const std::string file = write(
+      "chamber.toml",
+      "[scene]\nfile = \"chamber.obj\"\nunit = \"m\"\n[[source]]\nkind = \"led\"\npower_W = 1\n"
+      "position_m = [0, 0, 2]\ndirection = [0, 0, -1]\naperture_diameter_m = 0.1\nprofile = "
+      "\"pillbox\"\npillbox_measure = \"solid_angle\"\nhalf_angle_deg = 30\nwavelength_nm = "
+      "500\n[trace]\nrays = 65536\n");
+  const Outcome traced = succeed("trace " + file + " --out " + at("o"));
+  EXPECT_THAT(traced.out + traced.err, Not(HasSubstr("WARNING")));
+  EXPECT_THAT(traced.out + traced.err, Not(HasSubstr("inside of closed parts")));
+  succeed("check " + file);
+}
+
 TEST_F(OpticalTruth, PartsBelowTheResolutionOfRaysAreRefused) {
   const std::string far = "v 10000 0 0\nv 10000.001 0 0\nv 10000 0.001 0\no chip\nf 5 6 7\n";
   const std::string file = plate("[0, 0, -1]", "", "f 1 2 3 4\n" + far);

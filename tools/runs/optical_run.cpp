@@ -362,6 +362,13 @@ void print_direct_checks(const Console& console, const OpticalResult& result) {
                " million segments/s)");
 }
 
+// Whether a receiver whose direct light is traced by rays received none.
+bool is_unmet(const std::string& name, const Estimate& power_W, const OpticalResult& result) {
+  return power_W.value == 0.0 &&
+         std::ranges::none_of(result.direct.gathered,
+                              [&](const DirectLight& direct) { return direct.name == name; });
+}
+
 }  // namespace
 
 void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result) {
@@ -386,6 +393,12 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
     if (!receiver.flux_map) continue;
     const FluxMap map = receiver.flux_map->flux_map(result.sums[i]);
     row("on " + receiver.name, map.incident.power_W);
+    if (is_unmet(receiver.name, map.incident.power_W, result)) {
+      // The rule of three: with 95 % probability, less than 3/n of the light goes where none of n
+      // rays went.
+      console.line("  note: no ray met it: at most about " +
+                   show_brief(3.0 * result.sent_W / static_cast<double>(result.rays)) + " W");
+    }
     if (map.incident.power_W.value > (1.0 + 1e-6) * power_balance.emitted_W) {
       console.line("  note: more than is emitted: reflected light returns to it");
     }
