@@ -144,13 +144,18 @@ void OutputFolder::make() {
 // Writes a page of bytes: on a full disk a file can be created, but not filled.
 void OutputFolder::try_to_write() const {
   const fs::path trial = temporary_beside(path_ / "trial");
-  const int file =
-      ::open(trial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+  const int file = open_trial(trial);
   int error = file < 0 ? errno : 0;
   constexpr std::array<char, 4096> page{};
   if (file >= 0) {
-    if (::write(file, page.data(), page.size()) != static_cast<ssize_t>(page.size())) {
-      error = errno == 0 ? ENOSPC : errno;
+    // After a part, only the next write has the reason why the rest was not written.
+    for (size_t done = 0; error == 0 && done < page.size();) {
+      const ssize_t written = ::write(file, page.data() + done, page.size() - done);
+      if (written > 0) {
+        done += static_cast<size_t>(written);
+      } else {
+        error = written < 0 ? errno : ENOSPC;
+      }
     }
     if (::close(file) != 0 && error == 0) error = errno;
     ::unlink(trial.c_str());
