@@ -44,15 +44,6 @@ std::string unpredictable() {
   return text;
 }
 
-// Creates a new file; fails at a link or an existing file.
-void make_own_file(const fs::path& path, const fs::path& wanted) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-  if (file < 0) {
-    throw InputError({wanted.string()}, "", std::strerror(errno), "a path that can be written");
-  }
-  ::close(file);
-}
-
 // The process of this machine in the name of a temporary file; nothing for other names.
 std::optional<pid_t> writer_of(const std::string& name) {
   const size_t mark = name.rfind(host_mark());
@@ -92,6 +83,23 @@ bool reaches_disk(const fs::path& path) {
 bool is_temporary(const fs::path& folder) {
   return std::any_of(folder.begin(), folder.end(),
                      [](const fs::path& part) { return writer_of(part.string()).has_value(); });
+}
+
+// A failed write, with the name that the file would have got: without temporary folders.
+InputError write_failed(const fs::path& path, const std::string& found = "a write that failed",
+                        const std::string& expected = "space and permission") {
+  fs::path wanted;
+  for (const fs::path& part : path) {
+    if (!writer_of(part.string())) wanted /= part;
+  }
+  return {{wanted.string()}, "", found, expected};
+}
+
+// Creates a new file; fails at a link or an existing file.
+void make_own_file(const fs::path& path, const fs::path& wanted) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (file < 0) throw write_failed(wanted, std::strerror(errno), "a path that can be written");
+  ::close(file);
 }
 
 }  // namespace
@@ -189,7 +197,7 @@ void sync_folder(const fs::path& folder) {
   const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (opened < 0) return;
   if (!sync_and_close(opened)) {
-    throw InputError({folder.string()}, "", "a write that failed", "space and permission");
+    throw write_failed(folder);
   }
 }
 
@@ -219,7 +227,7 @@ void write_file_whole(const fs::path& path, const std::function<void(const fs::p
     make_own_file(temporary, path);
     write(temporary);
     if (!reaches_disk(temporary)) {
-      throw InputError({path.string()}, "", "a write that failed", "space and permission");
+      throw write_failed(path);
     }
   } catch (...) {
     fs::remove(temporary, failure);
@@ -229,7 +237,7 @@ void write_file_whole(const fs::path& path, const std::function<void(const fs::p
   if (failure) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    throw InputError({path.string()}, "", failure.message(), "a path that can be written");
+    throw write_failed(path, failure.message(), "a path that can be written");
   }
   if (!is_temporary(folder)) sync_folder(folder);
 }
@@ -239,7 +247,7 @@ void write_file_whole(const fs::path& path, const std::string& bytes) {
     std::ofstream out(temporary, std::ios::binary);
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     out.close();
-    if (!out) throw InputError({path.string()}, "", "a write that failed", "space and permission");
+    if (!out) throw write_failed(path);
   });
 }
 

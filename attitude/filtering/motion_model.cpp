@@ -5,7 +5,10 @@
 #include <cmath>
 
 #include "attitude/disturbances/kind.h"
+#include "attitude/observation/observation.h"
 #include "core/errors.h"
+#include "core/numerics/median.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
 #include "core/transform.h"
 
@@ -17,8 +20,12 @@ namespace {
 constexpr double usual_bias_rad_s = 5e-3;
 // Steps of this length are always sufficient, for oscillations of several periods per second too.
 constexpr double short_step_s = 0.05;
+// A step relative to the shortest time scale of the motion.
+constexpr double part_of_time_scale = 0.1;
 // Limit between two readings: more steps would take a minute, for a useless prediction.
 constexpr double most_steps = 200000.0;
+// Rows that share these steps: the fewest readings of a recording that is compared with a model.
+constexpr double fewest_rows = 20.0;
 
 bool is_of_gyro(const Disturbance& disturbance) {
   const DisturbanceKind* kind = find_kind(disturbance.kind);
@@ -30,6 +37,20 @@ bool is_of_instruments(const Disturbance& disturbance) {
   const DisturbanceKind* kind = find_kind(disturbance.kind);
   return disturbance.stage == Stage::measurement || disturbance.kind == "earth_rotation" ||
          (kind != nullptr && !kind->instrument.empty());
+}
+
+// Angular frequency of the fastest oscillation under the torques, or the rate of a growth.
+double oscillation_1_s(const MatX& rate_matrix) {
+  return std::sqrt(rate_matrix.block<3, 3>(MotionModel::rate, MotionModel::attitude).norm());
+}
+
+// Median of the recorded rate; 0 without a gyro.
+double usual_rate_rad_s(const Observation& seen) {
+  std::vector<double> rates;
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    if (seen.gyro_rows[i].minCoeff() > 0.0) rates.push_back(seen.gyro_rad_s[i].norm());
+  }
+  return rates.empty() ? 0.0 : upper_median(std::move(rates));
 }
 
 }  // namespace
@@ -160,17 +181,16 @@ VecX MotionModel::right_hand_side(const FilterState& state, const VecX& y, doubl
 // Step length [s]: a fraction of the shortest time scale of rotation, oscillation and damping.
 double MotionModel::step_length_s(const FilterState& state, double wanted_s) const {
   if (wanted_s <= short_step_s || extras_ > 0) return short_step_s;
-  constexpr double part = 0.1;
   double fastest_1_s = state.mean.rate_body_rad_s.norm();
   if (settings_.motion == Motion::disturbances) {
     const MatX a = rate_matrix(state);
-    fastest_1_s = std::max({fastest_1_s, std::sqrt(a.block<3, 3>(rate, attitude).norm()),
-                            a.block<3, 3>(rate, rate).norm()});
+    fastest_1_s = std::max({fastest_1_s, oscillation_1_s(a), a.block<3, 3>(rate, rate).norm()});
     // Laws that depend on time alone do not contribute to the derivatives.
     constexpr double longest_s = 60.0;
     wanted_s = std::min(wanted_s, longest_s);
   }
-  return std::max(short_step_s, std::min(wanted_s, part / std::max(fastest_1_s, 1e-12)));
+  return std::max(short_step_s,
+                  std::min(wanted_s, part_of_time_scale / std::max(fastest_1_s, 1e-12)));
 }
 
 // One step of the mean: by the laws with the fourth-order Runge–Kutta method, or at a constant
@@ -284,6 +304,28 @@ Transition MotionModel::advance(FilterState& state, double time_s, const Vec3& g
   state.covariance = whole.phi * state.covariance * whole.phi.transpose() + whole.covariance;
   state.covariance = 0.5 * (state.covariance + state.covariance.transpose()).eval();
   return whole;
+}
+
+void MotionModel::refuse_rows_far_apart(const Observation& seen, const AttitudeModel& model) {
+  double fastest_1_s = seen.has_some_attitude() ? usual_rate_rad_s(seen) : 0.0;
+  try {
+    const MotionModel motion(model, {}, {.uses_gyro = false}, seen.schedule);
+    const FilterState first =
+        motion.start(seen.time_s.front(), seen.attitude.front(), Mat3::Zero());
+    fastest_1_s = std::max(fastest_1_s, oscillation_1_s(motion.rate_matrix(first)));
+  } catch (const NumericalError&) {
+    // The torques are not defined at this attitude: the fit reports it.
+  }
+  const double between = fastest_1_s * seen.row_interval_s;
+  constexpr double longest = part_of_time_scale * most_steps / fewest_rows;
+  if (!(between > longest)) return;
+  throw InputError({seen.name, 0}, "t_s",
+                   printed("rows %.4g s apart, between which the platform rotates or oscillates "
+                           "through %.3g rad",
+                           seen.row_interval_s, between),
+                   printed("at most %.4g rad: is the unit of the time column another one (t_ms, "
+                           "t_us)?",
+                           longest));
 }
 
 void MotionModel::add(FilterState& state, const VecX& error) const {

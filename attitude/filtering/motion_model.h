@@ -56,6 +56,8 @@ struct Measurement {
   MatX noise;
 };
 
+struct Observation;
+
 class MotionModel {
  public:
   // The torques are used only if `settings` selects the model with disturbances. A gyro bias is
@@ -81,6 +83,12 @@ class MotionModel {
   // if the motion model uses the gyro and all three axes were read. NumericalError if more than
   // 200,000 steps are necessary.
   Transition advance(FilterState& state, double time_s, const Vec3& gyro_rad_s) const;
+  // InputError if the motion between two rows is too fast for a comparison: if 20 rows, the fewest
+  // of a recording, need more steps than advance() permits between two readings. The motion is the
+  // oscillation by the torques of `model` at the first attitude and, if attitudes are read, the
+  // recorded rate. Rows of slow motion may be months apart. The usual cause is a wrong unit of the
+  // time.
+  static void refuse_rows_far_apart(const Observation& seen, const AttitudeModel& model);
 
   // Measurements of attitude, rate and yaw at a state.
   Measurement of_attitude(const FilterState& state, const Quat& lab_from_body,

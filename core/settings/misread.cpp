@@ -104,6 +104,17 @@ class Misreading {
                          names.empty() ? "no keys here" : expected_keys(key, names));
   }
 
+  // An element that is not a number is named rather than its array of three.
+  void vector(const SettingsNode& value, const Key& key, const std::string& full) {
+    const auto wrong = std::ranges::find_if_not(items(value), &SettingsNode::is_number);
+    if (items(value).size() != 3 || wrong == items(value).end()) {
+      return expect(is_vector(value), value, key, full);
+    }
+    errors_.emplace_back(wrong->where,
+                         full + "[" + std::to_string(wrong - items(value).begin()) + "]",
+                         describe(*wrong), "a number");
+  }
+
   void expect(bool is_so, const SettingsNode& value, const Key& key, const std::string& full) {
     if (!is_so) errors_.emplace_back(value.where, full, describe(value), expected_of(key));
   }
@@ -155,7 +166,7 @@ class Misreading {
         choice(value, key, full);
         break;
       case Key::Type::vector:
-        expect(is_vector(value), value, key, full);
+        vector(value, key, full);
         break;
       case Key::Type::vectors:
         expect(!items(value).empty() && std::ranges::all_of(items(value), is_vector), value, key,

@@ -55,7 +55,7 @@ Vec3 attitude_error_rad(const Observation& seen, size_t block) {
 AttitudeSeries attitude_of(const Prediction& before, const Prediction& after,
                            const Observation& seen) {
   AttitudeSeries series;
-  if (!seen.sees_attitude()) return series;
+  if (!seen.has_some_attitude()) return series;
   for (size_t i = 0; i < seen.blocks(); ++i) {
     if (!(seen.attitude_rows[i] > 0.0)) continue;
     series.time_s.push_back(seen.time_s[i]);

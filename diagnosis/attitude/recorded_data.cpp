@@ -7,6 +7,7 @@
 #include "attitude/estimation/conventions.h"
 #include "attitude/estimation/fit.h"
 #include "attitude/estimation/segments.h"
+#include "attitude/filtering/motion_model.h"
 #include "attitude/observation/bias_history.h"
 #include "attitude/observation/heavy_tails.h"
 #include "attitude/observation/noise_levels.h"
@@ -165,6 +166,7 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
   for (const NamedRecording& r : recordings) {
     refuse_jump_of_clock(r.recording, r.name);
     Segments segments = observe_segments(r.recording, r.name, platform, options.max_blocks);
+    MotionModel::refuse_rows_far_apart(segments.all.front(), nominal.model);
     warn_of_omitted_rows(r.name, segments, warnings);
     if (r.recording.report.has_decimal_commas) {
       warnings.push_back(r.name + ": its numbers have decimal commas, read as points");

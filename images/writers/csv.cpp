@@ -13,23 +13,37 @@
 namespace photorque::kinds::csv {
 namespace {
 
+// Spreadsheets interpret a cell that begins with one of these characters as a formula, even in
+// quotes, unless it is a number. An apostrophe prevents this.
+bool begins_formula(char c) {
+  return std::string_view("=+-@").find(c) != std::string_view::npos;
+}
+
+// A text in a line of comment, which spreadsheets split into cells like any other line.
+std::string in_comment(const std::string& text) {
+  std::string clean;
+  for (const char c : clean_text(text)) {
+    const bool begins_cell = !clean.empty() && (clean.back() == ',' || clean.back() == ';');
+    if (begins_cell && begins_formula(c)) clean += '\'';
+    clean += c;
+  }
+  return clean;
+}
+
 std::string preamble(const std::string& title, const Provenance& provenance) {
-  std::string text = "# " + clean_text(provenance.program + " " + provenance.version) +
-                     "\n# git_hash: " + clean_text(provenance.git_hash) +
+  std::string text = "# " + in_comment(provenance.program + " " + provenance.version) +
+                     "\n# git_hash: " + in_comment(provenance.git_hash) +
                      "\n# seed: " + std::to_string(provenance.seed) + "\n";
   for (const auto& [file, hash] : provenance.inputs) {
-    text += "# input: " + clean_text(file) + " " + clean_text(hash) + "\n";
+    text += "# input: " + in_comment(file) + " " + in_comment(hash) + "\n";
   }
-  if (!title.empty()) text += "# title: " + clean_text(title) + "\n";
+  if (!title.empty()) text += "# title: " + in_comment(title) + "\n";
   return text;
 }
 
 std::string quoted_where_needed(const std::string& cell) {
   std::string clean = clean_text(cell);
-  // Spreadsheets interpret a text that begins with one of these characters as a formula, even in
-  // quotes, unless it is a number. An apostrophe prevents this.
-  if (!clean.empty() && std::string_view("=+-@").find(clean.front()) != std::string_view::npos &&
-      clean != "-" && !number_in(clean)) {
+  if (!clean.empty() && begins_formula(clean.front()) && clean != "-" && !number_in(clean)) {
     clean.insert(clean.begin(), '\'');
   }
   // A leading '#' would be read as a comment.

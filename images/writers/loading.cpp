@@ -1,6 +1,7 @@
 #include "images/writers/loading.h"
 
 #include <dlfcn.h>
+#include <pthread.h>
 #include <sys/mman.h>
 
 #include <filesystem>
@@ -36,6 +37,21 @@ fs::path module_path() {
   fail(program, "no " + std::string(file_name));
 }
 
+// Whether the stack of one more thread can be allocated: the error of a thread that cannot start is
+// the same without memory and with too many threads.
+bool has_room_for_stack() {
+  pthread_attr_t usual;
+  size_t bytes = 0;
+  if (::pthread_attr_init(&usual) != 0) return false;
+  ::pthread_attr_getstacksize(&usual, &bytes);
+  ::pthread_attr_destroy(&usual);
+  void* const stack =
+      ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (stack == MAP_FAILED) return false;
+  ::munmap(stack, bytes);
+  return true;
+}
+
 // The module's libraries start threads while they are loaded. If a thread cannot start, they abort
 // or hang; therefore memory and threads are tested first.
 void require_room_and_threads() {
@@ -50,14 +66,21 @@ void require_room_and_threads() {
   std::promise<void> all_started;
   const std::shared_future<void> go_on = all_started.get_future();
   std::vector<std::thread> started;
-  bool enough = true;
+  bool enough = true, has_memory = true;
   try {
     while (started.size() < threads) started.emplace_back([&] { go_on.wait(); });
   } catch (const std::system_error&) {
     enough = false;
+    has_memory = has_room_for_stack();
   }
   all_started.set_value();
   for (std::thread& thread : started) thread.join();
+  if (!has_memory) {
+    throw NumericalError("not enough memory for " + std::string(file_name) +
+                         ": found the stacks of " + std::to_string(started.size()) +
+                         " threads, expected " + std::to_string(threads) +
+                         " (ulimit -d, ulimit -v)");
+  }
   if (!enough) {
     throw NumericalError("not enough threads for " + std::string(file_name) + ": found " +
                          std::to_string(started.size()) + ", expected " + std::to_string(threads) +

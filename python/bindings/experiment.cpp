@@ -18,10 +18,7 @@ py::object value_of(const SettingsNode& node);
 SettingsNode table_of(const py::dict& dict, const std::string& key) {
   SettingsNode::Table table;
   for (const auto& [name, value] : dict) {
-    if (!py::isinstance<py::str>(name)) {
-      throw InputError({}, key, py::str(py::repr(name)), "keys that are texts");
-    }
-    const auto text = name.cast<std::string>();
+    const std::string text = text_of(name, key, "keys that are texts");
     std::string below = key;
     below.append(key.empty() ? "" : ".").append(text);
     table.emplace(text, settings_of(value, below));
@@ -64,7 +61,7 @@ SettingsNode settings_of(const py::handle& value, const std::string& key) {
     }
   }
   if (py::isinstance<py::float_>(value)) return {value.cast<double>()};
-  if (py::isinstance<py::str>(value)) return {value.cast<std::string>()};
+  if (py::isinstance<py::str>(value)) return {text_of(value, key, "a text")};
   if (py::isinstance<py::dict>(value)) {
     return table_of(py::reinterpret_borrow<py::dict>(value), key);
   }
@@ -84,7 +81,7 @@ py::object value_of(const SettingsNode& node) {
 
 ExperimentHandle changed(ExperimentHandle experiment, const py::dict& keys) {
   for (const auto& [key, value] : keys) {
-    const auto name = key.cast<std::string>();
+    const std::string name = text_of(key, "keys", "names of keys");
     experiment.options.overrides.push_back(name + "=" + toml_value(settings_of(value, name)));
   }
   experiment.options.settings(experiment.options.overrides);
@@ -102,13 +99,26 @@ ExperimentHandle make(const py::object& source, const py::dict& keys,
     if (folder) {
       throw InputError({}, "folder", "a folder beside a file", "one of the two");
     }
-    options.experiment = source.cast<std::filesystem::path>();
+    try {
+      options.experiment = source.cast<std::filesystem::path>();
+    } catch (const py::cast_error&) {
+      throw InputError({}, "source", py::str(py::repr(source)), "the path of a file, or a dict");
+    }
     options.text = options.experiment_text();
   }
   return changed(std::move(experiment), keys);
 }
 
 }  // namespace
+
+std::string text_of(const py::handle& text, const std::string& key, const std::string& expected) {
+  try {
+    if (py::isinstance<py::str>(text)) return text.cast<std::string>();
+  } catch (const py::cast_error&) {
+    // A text that cannot be encoded as UTF-8.
+  }
+  throw InputError({}, key, py::str(py::repr(text)), expected);
+}
 
 RunOptions ExperimentHandle::with(int threads, const py::object& seed) const {
   if (threads < 0 || threads > 1024) {

@@ -3,6 +3,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <string>
+
 #include "tools/runs/options.h"
 
 namespace photorque::python {
@@ -16,6 +18,9 @@ struct ExperimentHandle {
   // Options of a run with this number of threads (0: all) and, unless None, with another seed.
   RunOptions with(int threads, const py::object& seed) const;
 };
+
+// A name or text as UTF-8. InputError with the key if the value is something else.
+std::string text_of(const py::handle& text, const std::string& key, const std::string& expected);
 
 void bind_experiment(py::module_& module);
 

@@ -112,7 +112,7 @@ class OwnLamp final : public Emitter {
 
   Rows rows_of(const py::object& answer, const char* what) const {
     Rows rows = Rows::ensure(answer);
-    if (!rows) throw py::error_already_set();
+    if (!rows) fail("gave " + std::string(what) + " that are not an array of numbers");
     if (rows.ndim() != 2 || rows.shape(0) != ray_block || rows.shape(1) != 3) {
       fail("gave " + std::string(what) + " of shape " + std::string(py::str(rows.attr("shape"))) +
            ", expected (n, 3), a row for each point");
@@ -190,8 +190,7 @@ double number_in(const std::string& key, double value, double low, const std::st
 
 Vec3 vector_of(const std::string& key, const py::object& given) {
   const Rows numbers = Rows::ensure(given);
-  if (!numbers) throw py::error_already_set();
-  if (numbers.ndim() != 1 || numbers.shape(0) != 3) {
+  if (!numbers || numbers.ndim() != 1 || numbers.shape(0) != 3) {
     throw InputError({}, "lamp." + key, std::string(py::str(given)), "three numbers");
   }
   Vec3 vector(numbers.at(0), numbers.at(1), numbers.at(2));

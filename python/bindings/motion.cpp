@@ -32,7 +32,7 @@ MotionHandle propagate_motion(const ExperimentHandle& experiment, int threads,
   const Call call(options.experiment, progress, log);
   FurtherTorques further;
   for (const auto& [name, function] : torques) {
-    const auto text = name.cast<std::string>();
+    const std::string text = text_of(name, "torques", "names of torques");
     const auto law = py::reinterpret_borrow<py::object>(function);
     further.disturbances.push_back(own_torque(text, law, call));
     further.inputs.emplace_back("torque " + text, content_hash(source_of(law)));

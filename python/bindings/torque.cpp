@@ -44,7 +44,7 @@ class Evaluation {
       for (py::ssize_t k = 0; k < 3; ++k) rate.mutable_at(i, k) = x[static_cast<size_t>(5 + k)];
     }
     const Rows torques = Rows::ensure(function_(time_s, attitude, rate));
-    if (!torques) throw py::error_already_set();
+    if (!torques) fail("gave no array of numbers");
     if (torques.ndim() != 2 || torques.shape(0) != count || torques.shape(1) != 3) refuse(torques);
     std::vector<Torque> result(instants.size());
     for (py::ssize_t i = 0; i < count; ++i) {

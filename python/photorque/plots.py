@@ -26,6 +26,19 @@ def draw_map(field: Any, axes: Any = None) -> Any:
     return axes
 
 
+def _hangs(curve: Any) -> bool:
+    """Whether the curve is one bar between two values: a stage of a waterfall."""
+    return curve.style == "bars" and len(curve.x) == 2 and curve.x[0] == curve.x[1]
+
+
+def _draw_waterfall(stages: list[Any], axes: Any) -> None:
+    for stage in stages:
+        begin, end = stage.y
+        axes.bar(stage.x[0], end - begin, bottom=begin, width=0.8, color="C0" if begin == 0 else "C3")
+    axes.set_xticks([stage.x[0] for stage in stages], [stage.label for stage in stages],
+                    rotation=30, ha="right", rotation_mode="anchor")
+
+
 def _draw_curve(curve: Any, axes: Any) -> None:
     label = curve.label or None
     if curve.style == "bars":
@@ -55,13 +68,17 @@ def draw_plot(plot: Any, axes: Any = None) -> Any:
                                figsize=(_WIDTH_IN, _HEIGHT_IN * (1 + 0.5 * (count - 1))))[1]
     panels = numpy.atleast_1d(axes)
     for panel, where in zip(plot.panels, panels, strict=True):
-        for curve in panel.curves:
+        stages = [curve for curve in panel.curves if _hangs(curve)]
+        curves = [curve for curve in panel.curves if not _hangs(curve)]
+        for curve in curves:
             _draw_curve(curve, where)
         for level in panel.levels:
             where.axhline(level, linestyle=":", color="grey", linewidth=1)
         where.set(ylabel=panel.y_label, xscale="log" if plot.x_log else "linear",
                   yscale="log" if panel.y_log else "linear")
-        labels = sum(bool(curve.label) for curve in panel.curves)
+        if stages:
+            _draw_waterfall(stages, where)
+        labels = sum(bool(curve.label) for curve in curves)
         if labels > 4:
             where.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
         elif labels > 0:

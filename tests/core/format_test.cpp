@@ -20,6 +20,12 @@ TEST(CleanText, ReplacesInvalidUtf8) {
   EXPECT_EQ(clean_text("two\nlines\t"), "two lines ");
 }
 
+TEST(ShellWord, IsOneWordOnOneLine) {
+  EXPECT_EQ(shell_word("a/b.csv"), "a/b.csv");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_word("a\n[evil]\\'"), "$'a\\012[evil]\\\\\\''");
+}
+
 TEST(XmlText, EscapesMarkup) {
   EXPECT_EQ(xml_text("a<b & \"c\">"), "a&lt;b &amp; &quot;c&quot;&gt;");
 }

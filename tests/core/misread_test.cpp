@@ -51,5 +51,19 @@ TEST(MisreadKeys, OfAChoiceOnlyItsOwnKeysAreKnown) {
               ElementsAre(HasSubstr("lamp.side_m: found an unknown key")));
 }
 
+TEST(MisreadKeys, AnElementThatIsNoNumberIsNamed) {
+  const auto mistake = [](SettingsNode::Array value) {
+    const std::vector<Key> keys = {Vec3Key("aim_m", "its point")};
+    const std::vector<InputError> errors =
+        misread_keys({SettingsNode::Table{{"aim_m", {std::move(value)}}}}, keys, "lamp");
+    return errors.empty() ? std::string() : std::string(errors.front().what());
+  };
+  EXPECT_EQ(mistake({{0.0}, {0.0}, {1.0}}), "");
+  EXPECT_THAT(mistake({{0.0}, {std::string("x")}, {1.0}}),
+              HasSubstr("lamp.aim_m[1]: found \"x\", expected a number"));
+  EXPECT_THAT(mistake({{0.0}, {std::string("x")}}),
+              HasSubstr("lamp.aim_m: found an array of 2, expected an array of 3 numbers"));
+}
+
 }  // namespace
 }  // namespace photorque

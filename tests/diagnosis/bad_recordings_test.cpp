@@ -2,9 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 
+#include "attitude/disturbances/kind.h"
 #include "attitude/estimation/segments.h"
+#include "attitude/filtering/motion_model.h"
 #include "attitude/observation/observation.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
@@ -65,6 +68,54 @@ TEST(BadRecording, ClockJumpsAreReportedWithTheirTimes) {
   EXPECT_NO_THROW(refuse_jump_of_clock(with_pause(20.0), "run.csv"));
   EXPECT_THAT(refusal_of([&] { refuse_jump_of_clock(with_pause(1e9), "run.csv"); }),
               testing::HasSubstr("t_s: found nothing from t_s = 9.9 to 1000000010"));
+}
+
+// 200 rows of a platform whose rate is read as 0.05 rad/s about its vertical axis.
+Recording slowly_turning(double interval_s) {
+  std::ostringstream out;
+  out << "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
+  for (int i = 0; i < 200; ++i) {
+    const double half_rad = 0.5 * std::remainder(0.05 * interval_s * i, 6.283185307179586);
+    out << interval_s * i << "," << std::cos(half_rad) << ",0,0," << std::sin(half_rad)
+        << ",0,0,0.05\n";
+  }
+  return read_recording(test_file("slowly_turning.csv", out.str()));
+}
+
+// Times in microseconds that are read as seconds: between two rows the platform rotates through
+// 0.05 rad/s × 1e5 s, and swings at the square root of m g h / I.
+TEST(BadRecording, RowsFarApartForTheMotionAreRefused) {
+  const auto refuse = [](double interval_s, const AttitudeModel& model) {
+    return refusal_of([&] {
+      MotionModel::refuse_rows_far_apart(observe(slowly_turning(interval_s), "run.csv"), model);
+    });
+  };
+  AttitudeModel model;
+  model.platform.mass_kg = 7.0;
+  model.platform.inertia_kg_m2 = Vec3(0.11, 0.11, 0.19).asDiagonal();
+  // A day of rows once a minute, and rows of 1000 rad / (0.05 rad/s) = 20,000 s.
+  EXPECT_EQ(refuse(60.0, model), "");
+  EXPECT_EQ(refuse(19000.0, model), "");
+  EXPECT_THAT(refuse(1e5, model),
+              testing::AllOf(testing::HasSubstr("run.csv: t_s: found rows 1e+05 s apart, between "
+                                                "which the platform rotates or oscillates through "
+                                                "5e+03 rad, expected at most 1000 rad"),
+                             testing::HasSubstr("t_us")));
+  // Without motion the interval is not limited: 12 days.
+  Observation at_rest = observe(slowly_turning(1e6), "run.csv");
+  for (Vec3& rate : at_rest.gyro_rad_s) rate.setZero();
+  EXPECT_NO_THROW(MotionModel::refuse_rows_far_apart(at_rest, model));
+  model.disturbances = {make_disturbance_of("static_unbalance", {{"offset_m", {0, 0, -1e-3}}},
+                                            {model.platform, model.environment})};
+  const double swing_rad_s = std::sqrt(7.0 * 9.80665 * 1e-3 / 0.11);
+  EXPECT_EQ(refuse(800.0 / swing_rad_s, model), "");
+  EXPECT_THAT(refuse(1100.0 / swing_rad_s, model), testing::HasSubstr("rows 1392 s apart"));
+  NominalModel nominal;
+  nominal.model = model;
+  EXPECT_THAT(refusal_of([&] {
+                diagnose(nominal, {{"run.csv", slowly_turning(1e5)}}, {});
+              }),
+              testing::HasSubstr("rows 1e+05 s apart"));
 }
 
 TEST(BadRecording, NoneAtAllIsRefused) {

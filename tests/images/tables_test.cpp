@@ -77,6 +77,18 @@ TEST_F(Csv, TableReadsBackWithAwkwardText) {
   EXPECT_EQ(rows[3][1], "") << "NaN is an empty cell";
 }
 
+// Spreadsheets also split the lines of provenance into cells.
+TEST_F(Csv, ProvenanceHasNoFormulas) {
+  Product product = sample_product();
+  product.tables[0].title = "a;@b,-c = d";
+  Provenance provenance = sample_provenance();
+  provenance.inputs = {{"n,=1+1.toml", "00"}};
+  write_formats(product, provenance, folder, {"csv"});
+  const std::string text = read_file(folder / "budget.csv");
+  EXPECT_THAT(text, testing::HasSubstr("\n# input: n,'=1+1.toml 00\n"));
+  EXPECT_THAT(text, testing::HasSubstr("\n# title: a;'@b,'-c = d\n"));
+}
+
 TEST_F(Csv, TableWithoutRowsKeepsItsHeader) {
   Product product;
   product.tables = {{"empty", "", {{"t_s", {}, {}}, {"power_W", {}, {}}}}};

@@ -7,7 +7,7 @@ import unittest
 
 import numpy as np
 import photorque
-from support import FolderTest, nominal, program
+from support import FolderTest, attitude, nominal, program
 
 few_rays = {"trace.rays": 65536}
 
@@ -80,6 +80,18 @@ class Errors(FolderTest):
                 photorque.Experiment(keys)
         with self.assertRaises(photorque.InputError):
             photorque.Experiment(self.folder / "absent.toml")
+
+    def test_a_value_of_another_type_is_named_in_one_line(self):
+        experiment = photorque.Experiment(nominal)
+        for act, words in ((lambda: photorque.Experiment(None), "source: found None, expected the path"),
+                           (lambda: photorque.Experiment("a\0b"), "source: found 'a.x00b'"),
+                           (lambda: photorque.Experiment(nominal, keys={1: 2}), "keys: found 1, expected names"),
+                           (lambda: experiment.with_keys({None: 2}), "keys: found None"),
+                           (lambda: photorque.Experiment({"a": "\ud800"}), "a: found '.ud800', expected a text"),
+                           (lambda: photorque.propagate(photorque.Experiment(attitude), torques={3: len}),
+                            "torques: found 3, expected names")):
+            with self.assertRaisesRegex(photorque.InputError, "^[^\n]*" + words + "[^\n]*$"):
+                act()
 
     def test_input_errors_are_value_errors(self):
         self.assertTrue(issubclass(photorque.InputError, ValueError))

@@ -112,13 +112,15 @@ class OwnLamp(FolderTest):
     def test_what_makes_no_sense_is_refused(self):
         place = {"position_m": [0, 0, 1], "aim_m": [0, 0, 0]}
         for wrong in (lambda p: p, lambda p: (p[:, :3], p[:5, :3]), lambda p: (0 * p[:, :3], 0 * p[:, :3]),
-                      lambda p: (np.nan * p[:, :3], p[:, :3])):
+                      lambda p: (np.nan * p[:, :3], p[:, :3]), lambda p: "ab",
+                      lambda p: (p[:, :3], [["a"] * 3] * len(p))):
             lamp = photorque.Lamp(wrong, power_W=1, wavelength_nm=730, **place)
             with self.assertRaisesRegex(ValueError, 'lamp "lamp" gave'):
                 photorque.trace(self.experiment(), lamps=[lamp])
         for keys in ({"power_W": 0, "wavelength_nm": 730, **place}, {"power_W": 1, "wavelength_nm": -1, **place},
                      {"power_W": 1, "wavelength_nm": 730, "position_m": [0, 0, 1]},
-                     {"power_W": 1, "wavelength_nm": 730, "position_m": [0, 0], "aim_m": [0, 0, 0]}):
+                     {"power_W": 1, "wavelength_nm": 730, "position_m": [0, 0], "aim_m": [0, 0, 0]},
+                     {"power_W": 1, "wavelength_nm": 730, "position_m": "abc", "aim_m": [0, 0, 0]}):
             with self.assertRaises(photorque.InputError):
                 photorque.Lamp(cone, **keys)
         with self.assertRaises(photorque.InputError):

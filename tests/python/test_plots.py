@@ -42,6 +42,17 @@ class Plots(unittest.TestCase):
         np.testing.assert_array_equal(current_A, self.power.curve["current_A"])
         self.assertEqual(axes.get_ylabel(), "current [A]")
 
+    def test_a_waterfall_has_a_bar_for_every_stage(self):
+        axes = self.power.plot("loss_waterfall")
+        losses = self.power.tables["losses"]
+        power_W = losses["power_W"]
+        # The first stage, the losses after it, and the last stage from zero.
+        heights = [power_W[0], *(-losses["lost_W"][1:]), power_W[-1]]
+        np.testing.assert_allclose([bar.get_height() for bar in axes.patches], heights, rtol=1e-12)
+        np.testing.assert_allclose([bar.get_y() for bar in axes.patches], [0, *power_W[:-1], 0], rtol=1e-12)
+        names = [label.get_text() for label in axes.get_xticklabels()]
+        self.assertEqual(names, [losses["stage"][0], *losses["lost_to"][1:], losses["stage"][-1]])
+
     def test_panels_share_time(self):
         motion = photorque.propagate(photorque.Experiment(attitude, keys={"propagate.duration_s": 5}))
         axes = motion.plot("rates")

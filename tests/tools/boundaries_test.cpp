@@ -104,6 +104,24 @@ TEST_F(Boundaries, LittleMemoryIsOneLineAndStatusThree) {
   }
 }
 
+// Too little memory for the stacks of threads was reported as too few threads.
+TEST_F(Boundaries, LittleMemoryForDataIsNoLackOfThreads) {
+  const Outcome got = shell("(ulimit -d 100000; exec " + program_file + " trace " +
+                            plate("lamp", "") + " --quiet --threads 1 --out " + at("o") + ")");
+  EXPECT_EQ(got.status, 3);
+  EXPECT_THAT(got.err, testing::StartsWith("numerical failure: not enough memory"));
+}
+
+// The error of an earlier call of the system stood as the reason, and names of temporary folders.
+TEST_F(Boundaries, FilesBeyondTheLimitAreNamedAsResults) {
+  const std::string trace =
+      "; exec " + program_file + " trace " + plate("lamp", "") + " --quiet --out " + at("o") + ")";
+  EXPECT_THAT(refusal_in(shell("(ulimit -f 1" + trace)), testing::HasSubstr("(File too large)"));
+  const std::string refusal = refusal_in(shell("(ulimit -f 16" + trace));
+  EXPECT_THAT(refusal, testing::StartsWith(at("o/")));
+  EXPECT_THAT(refusal, testing::Not(testing::HasSubstr(".part")));
+}
+
 // The limit does not hold for the superuser. Libraries of pictures aborted, or waited without end.
 TEST_F(Boundaries, TooFewThreadsAreOneLineAndStatusThree) {
   const std::string other = ::geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";

@@ -101,6 +101,20 @@ TEST_F(GuessCommand, PrintsItsFilesAndKeepsChangedOnes) {
   EXPECT_THAT(file_text(at("guess/disc.toml")), HasSubstr("# confirmed"));
 }
 
+// The printed text is an experiment whatever the name of the recording is, and the suggested
+// command names the recording to a shell.
+TEST_F(GuessCommand, PrintsNamesWithLineEndsOnOneLine) {
+  std::string rows = "t_s,angle_deg\n";
+  for (int i = 0; i < 100; ++i) rows += std::to_string(i) + "," + std::to_string(i * i) + "\n";
+  write("a\n[evil]; b.csv", rows);
+  const Outcome got = succeed("diagnose --guess \"$(printf '" + at("a") +
+                              "\\n[evil]; b.csv')\" --out " + at("guess"));
+  EXPECT_THAT(got.out, testing::Not(HasSubstr("\n[evil]")));
+  EXPECT_THAT(got.out,
+              HasSubstr("# photorque diagnose $'" + at("guess/a") + "\\012[evil]; b.toml'" +
+                        " --recording $'" + at("a") + "\\012[evil]; b.csv'\n"));
+}
+
 // Nothing carries what turns in an inertial frame.
 TEST_F(GuessCommand, AnAttitudeInSpaceIsThatOfAFreeBody) {
   const auto topology = [&](const std::string& frame) {

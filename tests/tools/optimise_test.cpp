@@ -80,6 +80,9 @@ constraint = [{ figure = "power_on_plate_W", at_most = 120 }]
   const Outcome got = optimise();
   ASSERT_EQ(got.status, 0) << got.err;
   EXPECT_LE(figure("best_power_on_plate_W"), 120.0);
+  // The plate starts at a tilt of 10.5 deg, where 160 W × cos 10.5 deg arrive.
+  EXPECT_THAT(got.out, HasSubstr("where the search starts, has power_on_plate_W = 157.3"));
+  EXPECT_THAT(got.out, HasSubstr("the constraint is at most 120"));
   EXPECT_NEAR(axis("attitude.tilt_deg"), std::acos(0.75) / degree_rad, 0.05);
 }
 

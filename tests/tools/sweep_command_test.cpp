@@ -117,6 +117,8 @@ TEST_F(Sweep, WrongInputIsOneLine) {
   refuses("[sweep]\nverb = \"trace\"\n" + axis + "from = 0\nto = 2\ncount = 1\n", "count");
   refuses("[sweep]\nverb = \"trace\"\n[[sweep.axis]]\nkey = \"source[0].power_w\"\nvalues = [1]\n",
           "power_w");
+  refuses("[sweep]\nverb = \"trace\"\ndesigns = 4\n" + axis + "values = [1, 2]\n",
+          "found a list, in a plan with random designs");
   refuses(grid, "K/N", "--shard 3/2");
 }
 

@@ -227,7 +227,7 @@ std::string where_section(const Where& where) {
 std::string ranking(const Diagnosis& d) {
   if (d.alternatives.empty()) return "";
   const std::string chosen =
-      d.verdict == Verdict::unexplained
+      d.verdict == Verdict::unexplained && d.effects.empty()
           ? " No name was chosen: the model that is reported is bold and blue."
           : " The chosen one is bold and blue.";
   std::string section =

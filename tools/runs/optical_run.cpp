@@ -374,9 +374,8 @@ bool is_unmet(const std::string& name, const Estimate& power_W, const OpticalRes
 void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result) {
   const PowerBalance& power_balance = result.power_balance;
   const auto row = [&](const std::string& name, const Estimate& power) {
-    console.line("  " + name + std::string(24 - std::min<size_t>(24, name.size()), ' ') +
-                 show(power, "W") + "  (" + show_percent(power.value / power_balance.emitted_W) +
-                 ")");
+    console.line("  " + padded(name, 24) + show(power, "W") + "  (" +
+                 show_percent(power.value / power_balance.emitted_W) + ")");
   };
   console.heading("Power");
   row("emitted", {power_balance.emitted_W, 0.0});

@@ -46,33 +46,63 @@ fs::path place_of(const fs::path& folder) {
   return place.has_filename() ? place : place.parent_path();  // without a trailing slash
 }
 
-// Folders that belong to the system or to all users.
-// Source: Filesystem Hierarchy Standard 3.0, sections 3 and 4.
-bool is_of_the_system(const fs::path& place) {
-  constexpr std::array<std::string_view, 14> shared = {
-      "/",    "/dev", "/dev/shm", "/home", "/media", "/mnt",       "/opt",
-      "/run", "/srv", "/tmp",     "/usr",  "/var",   "/usr/local", "/var/tmp"};
-  constexpr std::array<std::string_view, 14> with_all_below = {
-      "/bin", "/boot",    "/etc",         "/lib",     "/lib64",     "/proc",     "/sbin",
-      "/sys", "/usr/bin", "/usr/include", "/usr/lib", "/usr/lib64", "/usr/sbin", "/usr/share"};
-  const std::string name = place.string();
-  return std::ranges::find(shared, name) != shared.end() ||
-         std::ranges::any_of(with_all_below, [&](std::string_view tree) {
-           return name == tree || name.starts_with(std::string(tree) + "/");
-         });
+// Folders in which every user may have folders of their own.
+bool is_of_all_users(const fs::path& place) {
+  constexpr std::array<std::string_view, 11> shared = {"/",    "/dev/shm", "/home",   "/media",
+                                                       "/mnt", "/opt",     "/srv",    "/run/user",
+                                                       "/tmp", "/usr/src", "/var/tmp"};
+  return std::ranges::find(shared, place.string()) != shared.end();
 }
 
-// Results are not written into folders of other users, except those of earlier runs: some file
-// systems assign all files to one user.
+// Whether a folder is in one of the trees that the system and its packages manage.
+// Source: Filesystem Hierarchy Standard 3.0, sections 3 to 6.
+bool is_in_tree_of_the_system(const fs::path& place) {
+  constexpr std::array<std::string_view, 10> trees = {"bin", "boot", "dev", "etc", "proc",
+                                                      "run", "sbin", "sys", "usr", "var"};
+  for (fs::path above = place; above.has_relative_path(); above = above.parent_path()) {
+    if (above != place && is_of_all_users(above)) return false;
+  }
+  const std::string tree = place.has_relative_path() ? place.relative_path().begin()->string() : "";
+  return std::ranges::find(trees, tree) != trees.end() || tree.starts_with("lib");
+}
+
+// The user to whom the folder belongs or, if it does not exist, the nearest one above it.
+uid_t owner_of(fs::path place) {
+  struct stat found {};
+  while (::stat(place.c_str(), &found) != 0 && place.has_relative_path()) {
+    place = place.parent_path();
+  }
+  return found.st_uid;
+}
+
+// A temporary file, for a trial; negative if it cannot be created.
+int open_trial(const fs::path& trial) {
+  return ::open(trial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+}
+
+// Whether new files in a folder belong to the owner of the folder: some file systems assign all
+// files to one user.
+bool assigns_files_to(uid_t owner, const fs::path& folder) {
+  const fs::path trial = temporary_beside(folder / "trial");
+  const int file = open_trial(trial);
+  if (file < 0) return false;
+  struct stat made {};
+  const bool is_theirs = ::fstat(file, &made) == 0 && made.st_uid == owner;
+  ::close(file);
+  ::unlink(trial.c_str());
+  return is_theirs;
+}
+
+// Results are written neither into the trees of the system, except into folders that a user other
+// than the superuser has there, nor into an existing folder of another user.
 void require_own(const fs::path& place) {
-  if (is_of_the_system(place)) {
+  const uid_t user = ::geteuid(), owner = owner_of(place);
+  if (is_of_all_users(place) || (is_in_tree_of_the_system(place) && (user == 0 || owner != user))) {
     throw refused(place, "a folder of the system", "a folder that belongs to you, or a new one");
   }
-  struct stat had {};
   std::error_code failure;
-  if (::stat(place.c_str(), &had) == 0 && had.st_uid != ::geteuid() &&
-      !fs::exists(place / "files.json", failure)) {
-    throw refused(place, "a folder of user " + std::to_string(had.st_uid),
+  if (fs::exists(place, failure) && owner != user && !assigns_files_to(owner, place)) {
+    throw refused(place, "a folder of user " + std::to_string(owner),
                   "a folder that belongs to you, or a new one");
   }
 }
@@ -114,13 +144,18 @@ void OutputFolder::make() {
 // Writes a page of bytes: on a full disk a file can be created, but not filled.
 void OutputFolder::try_to_write() const {
   const fs::path trial = temporary_beside(path_ / "trial");
-  const int file =
-      ::open(trial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+  const int file = open_trial(trial);
   int error = file < 0 ? errno : 0;
   constexpr std::array<char, 4096> page{};
   if (file >= 0) {
-    if (::write(file, page.data(), page.size()) != static_cast<ssize_t>(page.size())) {
-      error = errno == 0 ? ENOSPC : errno;
+    // After a part, only the next write has the reason why the rest was not written.
+    for (size_t done = 0; error == 0 && done < page.size();) {
+      const ssize_t written = ::write(file, page.data() + done, page.size() - done);
+      if (written > 0) {
+        done += static_cast<size_t>(written);
+      } else {
+        error = written < 0 ? errno : ENOSPC;
+      }
     }
     if (::close(file) != 0 && error == 0) error = errno;
     ::unlink(trial.c_str());

@@ -110,6 +110,10 @@ std::vector<double> sobol_column(uint64_t seed, size_t dimension, size_t count) 
 
 std::vector<std::string> random_values(const Settings& axis, uint64_t seed, size_t number,
                                        size_t designs) {
+  if (axis.has(axis_key::values)) {
+    throw axis.error(axis_key::values, "a list, in a plan with random designs",
+                     "from and to, or mean and sigma; or a grid, without designs");
+  }
   const std::vector<double> fractions = sobol_column(seed, number, designs);
   std::vector<std::string> values;
   if (axis.has(axis_key::mean)) {

@@ -69,6 +69,7 @@ class Search {
     console_.line("  " + std::to_string(result_.designs.size()) + " designs; " +
                   std::to_string(engine_.made()) + " runs now, " + std::to_string(engine_.kept()) +
                   " kept from before");
+    print_broken_at_start();
     print_limits();
     const bool all_failed =
         std::ranges::none_of(result_.designs, [](const Design& d) { return d.error.empty(); });
@@ -106,6 +107,19 @@ class Search {
       value.margins.push_back(figure ? relative_margin(constraint, figure->value) : -1.0);
     }
     return value;
+  }
+
+  // Prints the constraints that the experiment as written breaks: the search starts there.
+  void print_broken_at_start() const {
+    for (const Constraint& constraint : plan_.constraints) {
+      const auto figure = figure_of(result_.nominal, constraint.figure.column());
+      if (!figure || relative_margin(constraint, figure->value) >= 0.0) continue;
+      const bool is_low = figure->value < constraint.at_least;
+      console_.line("  note: the experiment as written, where the search starts, has " +
+                    constraint.figure.name + " = " + show(figure->value) +
+                    ", and the constraint is " + (is_low ? "at least " : "at most ") +
+                    show(is_low ? constraint.at_least : constraint.at_most));
+    }
   }
 
   // Prints axes whose best value is at an end of the range: the optimum may be outside it.

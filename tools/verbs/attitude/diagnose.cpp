@@ -395,31 +395,33 @@ void add_options(Command& command, Options& options) {
 }
 
 void print_diagnosis(const Console& console, const Diagnosis& d) {
-  console.line(d.sentence);
+  // Names of nodes and columns may contain line ends.
+  const auto print = [&](const std::string& text) { console.line(clean_text(text)); };
+  print(d.sentence);
   for (const FoundEffect& effect : d.effects) {
     const std::string others = joined_text(effect.indistinguishable_from, " or ");
-    console.line("  " + effect.kind + (others.empty() ? "" : " or " + others) + ", probability " +
-                 show(effect.probability));
+    print("  " + effect.kind + (others.empty() ? "" : " or " + others) + ", probability " +
+          show(effect.probability));
     for (const FittedParameter& p : effect.parameters) {
       std::string text = "    " + p.key + " ";
       for (size_t i = 0; i < p.value.size(); ++i) {
         const double sigma = i < p.sigma.size() ? p.sigma[i] : 0.0;
         text += (i > 0 ? ", " : "= ") + show(Estimate{p.value[i], sigma}, "");
       }
-      console.line(text);
+      print(text);
     }
     for (const std::string& text : effect.known_together) {
-      console.line("    only this combination is identifiable: " + text);
+      print("    only this combination is identifiable: " + text);
     }
-    for (const auto& [key, words] : effect.texts) console.line("    " + key + " = " + words);
+    for (const auto& [key, words] : effect.texts) print("    " + key + " = " + words);
   }
-  console.line("  chi² per sample " + readable_number(d.chi2_per_sample_before) + " before, " +
-               readable_number(d.chi2_per_sample_after) + " after");
+  print("  chi² per sample " + readable_number(d.chi2_per_sample_before) + " before, " +
+        readable_number(d.chi2_per_sample_after) + " after");
   if (d.holdout) {
-    console.line("  held out:        " + readable_number(d.holdout->chi2_per_sample_before) +
-                 " before, " + readable_number(d.holdout->chi2_per_sample_after) + " after");
+    print("  held out:        " + readable_number(d.holdout->chi2_per_sample_before) + " before, " +
+          readable_number(d.holdout->chi2_per_sample_after) + " after");
   }
-  for (const std::string& warning : d.warnings) console.line("  note: " + warning);
+  for (const std::string& warning : d.warnings) print("  note: " + warning);
 }
 
 // Writes the guessed experiment; the printed text is the same experiment.
@@ -439,10 +441,10 @@ void write_guess(const Options& options) {
   }
   write_file_whole(file, text);
   console.line(text);
-  console.line("# Written to " + file.string() + ". Next, as it is or confirmed:");
-  std::string next = "# photorque diagnose " + file.string();
+  console.line("# Written to " + clean_text(file.string()) + ". Next, as it is or confirmed:");
+  std::string next = "# photorque diagnose " + shell_word(file.string());
   for (const std::filesystem::path& recording : options.guess) {
-    next += " --recording " + recording.string();
+    next += " --recording " + shell_word(recording.string());
   }
   console.line(next);
 }
