@@ -80,7 +80,8 @@ bool stands_still(const std::vector<ReadingAt>& x, size_t first, size_t order) {
 
 // Collects the sizes of the differences of readings and of the second differences. They are
 // multiples of the last digit; second differences are small for a steady motion. Sizes below the
-// rounding of a file are left out. Equal steps, as of a simulated steady motion, show no digit.
+// rounding of a file are left out. Equal steps in equal times, as of a simulated steady motion,
+// show no digit.
 void collect_steps(const std::vector<ReadingAt>& x, std::vector<double>& steps) {
   double largest = 0.0;
   for (const ReadingAt& reading : x) largest = std::max(largest, std::abs(reading.value));
@@ -91,18 +92,20 @@ void collect_steps(const std::vector<ReadingAt>& x, std::vector<double>& steps) 
   constexpr double of_largest = 1e-5, of_usual = 1e-2;
   const double rounding =
       firsts.empty() ? 0.0 : std::min(of_largest * largest, of_usual * upper_median(firsts));
+  constexpr double alike = 1e-3;
   const size_t before = steps.size();
-  bool changes = false;
+  bool is_steady = true;
   for (size_t i = 1; i < x.size(); ++i) {
     const double step = x[i].value - x[i - 1].value;
     if (std::abs(step) > rounding) steps.push_back(std::abs(step));
     if (i < 2) continue;
-    const double change = step - (x[i - 1].value - x[i - 2].value);
-    if (!(std::abs(change) > rounding)) continue;
-    steps.push_back(std::abs(change));
-    changes = true;
+    const double change = step - (x[i - 1].value - x[i - 2].value),
+                 time_s = x[i].time_s - x[i - 1].time_s,
+                 longer_s = time_s - (x[i - 1].time_s - x[i - 2].time_s);
+    if (std::abs(change) > rounding) steps.push_back(std::abs(change));
+    is_steady = is_steady && std::abs(change) <= rounding && std::abs(longer_s) < alike * time_s;
   }
-  if (!changes) steps.resize(before);
+  if (is_steady) steps.resize(before);
 }
 
 }  // namespace
