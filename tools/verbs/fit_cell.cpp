@@ -62,6 +62,10 @@ void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
     note(cleaning.clipped, "points from " + show(cleaning.clipped_from_V) +
                                " V on, beyond open circuit, where the meter stays at " +
                                show(cleaning.clipped_A) + " A");
+    const RangeLimit limit = take_range_limit(curve.sweep);
+    note(limit.readings, "readings of " + show(limit.current_A) +
+                             " A, which is the end of the meter's range: the curve leaves this "
+                             "plateau abruptly");
     if (curve.sweep.light.empty() && task.substrings == 0) {
       const UnsteadyLight unsteady = take_unsteady_light(curve.sweep, task.noise.current_fraction);
       note(unsteady.readings, "points between " + show(unsteady.from_V) + " and " +
@@ -228,9 +232,11 @@ void check_ideality(const SingleDiode& d, double scatter, const FitTask& task) {
   // With fewer cells the ideality of one is larger, but so is its voltage.
   constexpr double junction_V = 0.3;
   if (ideality < lowest && open_circuit_V(task) > junction_V * task.cells_in_series) {
+    std::string without;
+    for (const std::string& note : task.notes) without += "; " + note;
     throw InputError({}, task.datasheet.empty() ? "fit.curves" : "fit.datasheet",
                      "an ideality of " + show(ideality) + " for each of " +
-                         std::to_string(task.cells_in_series) + " cells",
+                         std::to_string(task.cells_in_series) + " cells" + without,
                      "the curve of one diode (an ideality of 1 to 2): this one falls faster near "
                      "open circuit, or the number of cells in series is smaller");
   }
