@@ -382,6 +382,16 @@ TEST(PhotovoltaicFit, ReadingsUnderOtherLightAreLeftOut) {
   EXPECT_EQ(fit.points, 100u);
   EXPECT_NEAR(fit.diode.photocurrent_A.value, 9.0, 0.01);
   EXPECT_NEAR(fit.diode.shunt_ohm.value, 200.0, 8.0);
+  // A fall in proportion to the voltage has the curve of a leak, and no larger scatter.
+  for (const double fall : {0.01, 0.03, 0.1}) {
+    const auto falling = [=](int i) { return 1.0 - fall * (i / 99.0 - 0.5); };
+    IvSweep monitored = module.sweep(falling);
+    for (int i = 0; i < 100; ++i) monitored.light.push_back(falling(i));
+    const SweepFit lit = fit_sweeps(std::array{monitored}, {});
+    EXPECT_TRUE(lit.uses_light) << fall;
+    EXPECT_NEAR(lit.diode.shunt_ohm.value, 200.0, 8.0) << fall;
+    EXPECT_NEAR(lit.diode.photocurrent_A.value, 9.0, 0.01) << fall;
+  }
   // A sensor that scatters while the light is steady is not.
   IvSweep scattered = module.sweep([](int) { return 1.0; });
   for (uint64_t i = 0; i < 100; ++i) {

@@ -292,11 +292,14 @@ void print_left_out(const Console& console, const FitTask& task,
                (outliers.size() > shown ? ", …" : ""));
 }
 
-void print_light_note(const Console& console, bool uses_light, bool is_one) {
-  if (!uses_light) return;
-  console.line(
-      std::string("  note: the irradiance of each reading is used; the photocurrent is at ") +
-      (is_one ? "its mean" : "the mean of each curve"));
+// States whether the irradiance of single readings is used, if any curve has it.
+void print_light_note(const Console& console, const FitTask& task, bool uses_light) {
+  if (std::ranges::all_of(task.sweeps, [](const IvSweep& s) { return s.light.empty(); })) return;
+  console.line(uses_light ? std::string("  note: the irradiance of each reading is used; the "
+                                        "photocurrent is at ") +
+                                (task.sweeps.size() == 1 ? "its mean" : "the mean of each curve")
+                          : "  note: the irradiance of each reading is not used: it doubles the "
+                            "scatter");
 }
 
 // Prints the hysteresis: the difference between rising and falling voltage.
@@ -327,7 +330,7 @@ Product fit_even_light(const FitTask& task, const Console& console) {
                " points; scatter " + readable_number(std::sqrt(fit.variance), 3) +
                " times that of the stated noise");
   print_misfit(console, std::sqrt(fit.variance));
-  print_light_note(console, fit.uses_light, task.sweeps.size() == 1);
+  print_light_note(console, task, fit.uses_light);
   if (fit.storage) print_storage(console, *fit.storage, rows);
   console.line("  maximum " + show(best.power_W()) + " W at " + show(best.voltage_V) + " V");
   print_cell(console, fit.diode, task);
@@ -404,8 +407,8 @@ Product fit_several_conditions(const FitTask& given, const Console& console) {
                  " of its photocurrent (a shadow on a part, or a cloud); "
                  "fit it with substrings = N");
   }
-  print_light_note(console, std::ranges::any_of(fit.curves, &ConditionsFit::Curve::uses_light),
-                   false);
+  print_light_note(console, task,
+                   std::ranges::any_of(fit.curves, &ConditionsFit::Curve::uses_light));
   console.line("  rms of current " + show_percent(fit.rms) + " of the photocurrent over " +
                std::to_string(fit.points) + " points of " + std::to_string(fit.curves.size()) +
                " curves; scatter " + readable_number(std::sqrt(fit.variance), 3) +
