@@ -25,6 +25,19 @@ class ArrayCommand : public CommandTest {
   }
 };
 
+// A cell of 1 A in full light, n V_t 26.7 mV, 0.6 V, in closed form: no series resistance and no
+// leak, noise 1e-3.
+std::string lit_curve(double light) {
+  std::string rows = "voltage_V,current_A\n";
+  for (int i = 0; i <= 60; ++i) {
+    const double volt = 0.01 * i;
+    const double exact = light - 1e-10 * std::expm1(volt / 0.0267);
+    rows += std::to_string(volt) + "," + std::to_string(exact * (1.0 + 1e-3 * std::sin(97.0 * i))) +
+            "\n";
+  }
+  return rows;
+}
+
 // A measured module of 36 cells at two irradiances.
 TEST_F(ArrayCommand, FitsADatasheetAndPrintsTheCell) {
   const Outcome got =
@@ -158,6 +171,19 @@ TEST_F(ArrayCommand, AShuntThatFollowsTheLightIsNamed) {
   EXPECT_THAT(constant.out, HasSubstr("times their rounding"));
 }
 
+// A file under other light in both lists is one curve, with the light of [[fit.curve]].
+TEST_F(ArrayCommand, AFileInBothListsIsOneCurve) {
+  write("bright.csv", lit_curve(1.0));
+  write("dim.csv", lit_curve(0.4));
+  const std::string stated =
+      "[[fit.curve]]\nfile = \"bright.csv\"\nirradiance_W_m2 = 1000\n"
+      "[[fit.curve]]\nfile = \"dim.csv\"\nirradiance_W_m2 = 400\n";
+  const std::string once = fit(stated).out;
+  EXPECT_EQ(fit("curves = [\"bright.csv\", \"./dim.csv\"]\n" + stated).out, once);
+  EXPECT_THAT(once, HasSubstr("of 2 curves"));
+  EXPECT_THAT(once, HasSubstr("photocurrent_A_m2_W"));
+}
+
 // The curve of the case "iv_clipped_tail", in another instrument's words: n 1.10 and 8.00 A.
 TEST_F(ArrayCommand, ACurveThatTheMeterClippedIsFitted) {
   std::string text = "Sweep of 27 November\nVoltage (V);Current (mA)\n";
@@ -243,20 +269,8 @@ TEST_F(ArrayCommand, ACompressedCurveIsTheSameCurve) {
   EXPECT_EQ(outputs[0], outputs[1]);
 }
 
-// 1 A and 0.6 V of one cell, in closed form: no series resistance and no leak, noise 1e-3.
-std::string tight_curve() {
-  std::string rows = "voltage_V,current_A\n";
-  for (int i = 0; i <= 60; ++i) {
-    const double volt = 0.01 * i;
-    const double exact = 1.0 - 1e-10 * std::expm1(volt / 0.0267);
-    rows += std::to_string(volt) + "," + std::to_string(exact * (1.0 + 1e-3 * std::sin(97.0 * i))) +
-            "\n";
-  }
-  return rows;
-}
-
 TEST_F(ArrayCommand, ALeakThatDoesNotShowIsALowerLimit) {
-  write("tight.csv", tight_curve());
+  write("tight.csv", lit_curve(1.0));
   const Outcome got = fit("curves = [\"tight.csv\"]\n");
   EXPECT_THAT(got.out, testing::ContainsRegex("shunt_ohm +above [0-9.]+ \\(95 %\\)"));
   EXPECT_THAT(got.out, HasSubstr("# a lower limit (95 %)"));
@@ -267,7 +281,7 @@ TEST_F(ArrayCommand, ALeakThatDoesNotShowIsALowerLimit) {
 }
 
 TEST_F(ArrayCommand, CellsThatNoVoltageGoesWithAreRefused) {
-  write("tight.csv", tight_curve());
+  write("tight.csv", lit_curve(1.0));
   for (const auto& [cells, found] :
        {std::pair{"100000", "100000"}, std::pair{"2000", "2000 cells, of 3.00×10⁻⁴ V each"}}) {
     write("fit.toml",
@@ -294,7 +308,7 @@ TEST_F(ArrayCommand, CurvesSharperThanAnyJunctionAreRefusedAsSuch) {
   EXPECT_THAT(got, HasSubstr("fit.curves: found an ideality of 0.31"));
   EXPECT_THAT(got, HasSubstr("the curve of one diode"));
   // Half the voltage of a junction: the number of cells is wrong.
-  write("tight.csv", tight_curve());
+  write("tight.csv", lit_curve(1.0));
   write("fit.toml", "[fit]\ncurves = [\"tight.csv\"]\ncells_in_series = 4\n");
   EXPECT_THAT(refused("fit-cell " + at("fit.toml") + " --out " + at("out")),
               HasSubstr("fit.cells_in_series: found 4 cells"));

@@ -12,7 +12,7 @@ inline constexpr TextsKey curves(
     "several are repeats under the same light, or have separate lights; *or*",
     {.optional = true});
 inline constexpr TablesKey curve("curve", "curves whose light or temperature is stated; *or*");
-inline constexpr TextKey curve_file("file", "one of the files in `curves`");
+inline constexpr TextKey curve_file("file", "file of the curve; it may also be in `curves`");
 inline constexpr NumberKey curve_irradiance("irradiance_W_m2", Range::positive(),
                                             "irradiance of the curve",
                                             {.usually = "that in the file, if any"});

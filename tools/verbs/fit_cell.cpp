@@ -98,14 +98,22 @@ bool are_repeats(const std::vector<CurveAt>& curves) {
 }
 
 void read_curves(const Settings& s, const fs::path& folder, FitTask& task) {
+  const std::vector<Settings> stated_curves =
+      s.has(fit_key::curve) ? s.get(fit_key::curve) : std::vector<Settings>{};
   if (s.has(fit_key::curves)) {
     for (const std::string& name : s.get(fit_key::curves)) {
-      task.files.push_back(existing_file(s, fit_key::curves, folder, name));
-      add_curves(task.files.back(), {}, {}, task);
+      const fs::path file = existing_file(s, fit_key::curves, folder, name);
+      if (std::ranges::any_of(stated_curves, [&](const Settings& one) {
+            return fs::equivalent(file, existing_file(one, fit_key::curve_file, folder));
+          })) {
+        continue;
+      }
+      task.files.push_back(file);
+      add_curves(file, {}, {}, task);
     }
   }
-  if (s.has(fit_key::curve)) {
-    for (const Settings& one : s.get(fit_key::curve)) {
+  if (!stated_curves.empty()) {
+    for (const Settings& one : stated_curves) {
       const auto stated = [&](const NumberKey& key) -> std::optional<double> {
         if (!one.has(key)) return std::nullopt;
         return one.get(key);
