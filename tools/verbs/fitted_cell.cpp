@@ -109,11 +109,12 @@ void print_cell(const Console& console, const SingleDiode& d, const FitTask& tas
   print_key(console, "saturation_1_A", d.saturation_A.value);
   print_key(console, "ideality_1", d.scale_V.value / task.thermal_V());
   const auto print_ohm = [&](const char* name, const std::optional<double>& limit, double value,
-                             const char* comment) {
-    print_key(console, name, limit.value_or(value) / cells, limit ? comment : "");
+                             const std::string& bound) {
+    print_key(console, name, value / cells,
+              limit ? "not determined: " + (bound + show(*limit / cells)) + " (95 %)" : "");
   };
-  print_ohm("series_ohm", d.series_below_ohm, d.series_ohm.value, "an upper limit (95 %)");
-  print_ohm("shunt_ohm", d.shunt_above_ohm, d.shunt_ohm.value, "a lower limit (95 %)");
+  print_ohm("series_ohm", d.series_below_ohm, d.series_ohm.value, "below ");
+  print_ohm("shunt_ohm", d.shunt_above_ohm, d.shunt_ohm.value, "above ");
   if (reference.shunt_light_A > 0.0) {
     print_key(console, "shunt_photocurrent_A", reference.shunt_light_A);
     if (std::isfinite(reference.shunt_dark_ohm)) {

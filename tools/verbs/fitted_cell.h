@@ -59,7 +59,8 @@ void print_undetermined(const Console& console, const std::vector<CellRow>& rows
 void print_bounds(const Console& console, const std::vector<BoundReached>& bounds);
 void print_key(const Console& console, const char* name, double value,
                const std::string& comment = "");
-// Prints the keys of an experiment's [array.cell_parameters] for one of the cells. `reference`
+// Prints the keys of an experiment's [array.cell_parameters] for one of the cells: those of the
+// fit, also where the data determine only a limit. `reference`
 // states the change of the shunt with the light.
 void print_cell(const Console& console, const SingleDiode& diode, const FitTask& task,
                 const CellParameters& reference = {});
