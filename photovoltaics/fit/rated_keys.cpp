@@ -1,5 +1,7 @@
 #include "photovoltaics/fit/rated_keys.h"
 
+#include "core/text/parse.h"
+
 namespace photorque {
 namespace {
 
@@ -36,6 +38,16 @@ std::vector<Key> rated_point_keys() {
 TemperatureSlopes read_rated_slopes(const Settings& settings) {
   return {settings.get(rated_key::short_circuit_slope),
           settings.get(rated_key::open_circuit_slope)};
+}
+
+std::string assumed_slopes(const Settings& settings) {
+  std::string keys;
+  for (const NumberKey& key : {rated_key::open_circuit_slope, rated_key::short_circuit_slope}) {
+    if (settings.has(key)) continue;
+    keys +=
+        (keys.empty() ? "" : ", ") + std::string(key.name) + " = " + shortest(settings.get(key));
+  }
+  return keys;
 }
 
 std::vector<Key> rated_slope_keys() {

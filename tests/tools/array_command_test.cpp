@@ -200,6 +200,20 @@ TEST_F(ArrayCommand, ThePrintedCellIsTheFittedOne) {
   EXPECT_NEAR(power_W(10.47 / 5.0), 79.2, 0.05 * 79.2);
 }
 
+TEST_F(ArrayCommand, AssumedSlopesAreNamed) {
+  const Outcome got = fit("cells_in_series = 72\n" + lg400);
+  EXPECT_THAT(got.out, HasSubstr("assumed, since not stated: open_circuit_slope_per_K = -0.003, "
+                                 "short_circuit_slope_per_K = "));
+  EXPECT_THAT(file_text(at("out/parameters.csv")),
+              testing::ContainsRegex("gap_eV,assumed,[0-9.]+,\n"));
+  const Outcome stated =
+      fit("cells_in_series = 72\nopen_circuit_slope_per_K = -0.0026\n"
+          "short_circuit_slope_per_K = 3e-4\n" +
+          lg400);
+  EXPECT_THAT(stated.out, testing::Not(HasSubstr("assumed, since")));
+  EXPECT_THAT(file_text(at("out/parameters.csv")), HasSubstr("gap_eV,value,"));
+}
+
 // A file under other light in both lists is one curve, with the light of [[fit.curve]].
 TEST_F(ArrayCommand, AFileInBothListsIsOneCurve) {
   write("bright.csv", lit_curve(1.0));

@@ -190,6 +190,7 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
     for (const Settings& point : s.get(fit_key::datasheet))
       task.datasheet.push_back(read_rated_point(point));
     task.slopes = read_rated_slopes(s);
+    task.assumed_slopes = assumed_slopes(s);
     const RatedTolerance written = written_steps(task.datasheet);
     task.tolerance = {s.get_or(fit_key::rounding_current, written.step_A),
                       s.get_or(fit_key::rounding_voltage, written.step_V),
@@ -447,7 +448,10 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
                      "a fraction of the open-circuit voltage per kelvin, about -0.003");
   }
   std::vector<CellRow> rows = diode_rows(fit.diode, at_first);
-  rows.push_back({"gap_eV", {fit.model.gap_eV, fit.gap_error_eV}});
+  const bool is_assumed = !task.assumed_slopes.empty();
+  rows.push_back({"gap_eV",
+                  {fit.model.gap_eV, is_assumed ? 0.0 : fit.gap_error_eV},
+                  is_assumed ? CellRow::Is::assumed : CellRow::Is::value});
   rows.push_back({"rms_fraction", {fit.rms, 0.0}});
   print_rows(console, rows);
   print_bounds(console, fit.bounds);
@@ -456,6 +460,10 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
       "  errors: of figures rounded to " + show(t.step_A) + " A and " + show(t.step_V) + " V" +
       (t.fraction > 0.0 ? ", each good to " + show_percent(t.fraction) + " (one sigma)" : "") +
       (task.datasheet.size() == 1 ? "; one point leaves the ideality as assumed" : ""));
+  if (is_assumed) {
+    console.line("  note: assumed, since not stated: " + task.assumed_slopes +
+                 "; gap and temperature slopes follow from it");
+  }
   print_shunt_law(console, fit.shunt_law,
                   fit.other_rms > 0.0 ? "; the other law leaves " + show(fit.other_rms) : "");
   if (fit.rms_over_known > usual_scatter && task.datasheet.size() > 1) {
