@@ -200,6 +200,14 @@ TEST_F(ArrayCommand, ThePrintedCellIsTheFittedOne) {
   EXPECT_NEAR(power_W(10.47 / 5.0), 79.2, 0.05 * 79.2);
 }
 
+// With the 144 half-cells that a datasheet counts, no diode gives these figures.
+TEST_F(ArrayCommand, ASheetThatItsCellMissesIsAWarning) {
+  EXPECT_THAT(fit("cells_in_series = 144\n" + lg400).out,
+              HasSubstr("warning: these keys give 377"));
+  EXPECT_THAT(fit("cells_in_series = 72\n" + lg400).out,
+              testing::Not(HasSubstr("warning: these keys give")));
+}
+
 TEST_F(ArrayCommand, AssumedSlopesAreNamed) {
   const Outcome got = fit("cells_in_series = 72\n" + lg400);
   EXPECT_THAT(got.out, HasSubstr("assumed, since not stated: open_circuit_slope_per_K = -0.003, "

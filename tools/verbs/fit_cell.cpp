@@ -431,6 +431,27 @@ Product fit_several_conditions(const FitTask& given, const Console& console) {
   return product;
 }
 
+// Warns about the point whose stated maximum power the fitted cell misses most.
+void print_power_misfit(const Console& console, const RatedFit& fit,
+                        std::span<const RatedPoint> points) {
+  constexpr double noticeable = 0.005;
+  double worst = 0.0;
+  std::string words;
+  for (const RatedPoint& p : points) {
+    const RatedPoint gives = fit.predict(p.irradiance_W_m2, p.temperature_K);
+    const double stated_W = p.maximum_A * p.maximum_V, given_W = gives.maximum_A * gives.maximum_V;
+    const double off = given_W / stated_W - 1.0;
+    if (std::abs(off) < std::max(noticeable, worst)) continue;
+    worst = std::abs(off);
+    words = show(given_W) + " W for the stated " + show(stated_W) + " W (" + show_percent(off) +
+            ") at " + show(p.irradiance_W_m2) + " W/m²";
+  }
+  if (words.empty()) return;
+  console.line("  warning: these keys give " + words +
+               ". Check cells_in_series (half-cells in two parallel chains count once), and V_oc, "
+               "I_sc and the maximum for errors");
+}
+
 Product fit_datasheet(const FitTask& task, const Console& console) {
   const double guess_V = 1.2 * task.cells_in_series * boltzmann_J_K *
                          task.datasheet[0].temperature_K / elementary_charge_C;
@@ -466,6 +487,7 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
   }
   print_shunt_law(console, fit.shunt_law,
                   fit.other_rms > 0.0 ? "; the other law leaves " + show(fit.other_rms) : "");
+  print_power_misfit(console, fit, task.datasheet);
   if (fit.rms_over_known > usual_scatter && task.datasheet.size() > 1) {
     console.line("  warning: the figures are off by " + show(fit.rms) + " (rms), " +
                  show(fit.rms_over_known) +
