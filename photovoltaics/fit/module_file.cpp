@@ -194,19 +194,24 @@ double gap_of_technology_eV(const Listing& pan) {
 }
 
 // Sets the cell of a module with a recombination term, for which a cell here has no parameter: the
-// diode of the stated Gamma with the rated figures and slopes. Its leak is proportional to the
-// light as that recombination is.
+// diode of the stated Gamma with the rated figures. Its leak is proportional to the light as that
+// recombination is. The gap gives the slope of the maximum power, muPmpReq, to which PVsyst adjusts
+// muGamma; muVocSpec is only information there.
 void fit_rated(const Listing& pan, ListedModule& m) {
-  constexpr double of_milli = 1e-3;
+  constexpr double of_milli = 1e-3, of_percent = 1e-2;
   const RatedPoint& rated = m.rated;
-  const TemperatureSlopes slopes{
-      of_milli * pan.number("muISC", -1e5, 1e5) / rated.short_circuit_A,
-      of_milli * pan.number("muVocSpec", -1e6, 0.0) / rated.open_circuit_V};
+  const TemperatureSlopes slopes{of_milli * pan.number("muISC", -1e5, 1e5) / rated.short_circuit_A};
   const double one_V = m.cells_in_series * thermal_V(rated.temperature_K);
   const RatedFit fit = fit_rated_points(
       std::array{rated}, slopes, one_V * pan.number("Gamma", 0.1, 10.0), {}, ShuntLaw::inverse);
   const SingleDiode& d = fit.diode;
-  m.cell.gap_eV = fit.model.gap_eV;
+  const CellFigure power_W = [](const CellCurve& cell, double light_A) {
+    return cell.maximum_power(light_A).power_W();
+  };
+  const double light_A = d.photocurrent_A.value;
+  m.cell.gap_eV = gap_of_slope_eV(fit.model, light_A, slopes.short_circuit_1_K, power_W,
+                                  of_percent * pan.number("muPmpReq", -5.0, 0.0) *
+                                      power_W(CellCurve(fit.model.reference), light_A));
   m.cell.gap_slope_1_K = fit.model.gap_slope_1_K;
   m.cell.photocurrent_slope_1_K = fit.model.photocurrent_slope_1_K;
   set_cell({d.photocurrent_A.value, d.saturation_A.value, d.scale_V.value / one_V,
@@ -214,7 +219,8 @@ void fit_rated(const Listing& pan, ListedModule& m) {
            m);
   m.note = "D2MuTau = " + pan.text("D2MuTau") +
            ": a cell here has no such recombination; RSerie and RShunt were replaced by a fit to "
-           "Isc, Voc, Imp and Vmp with the stated Gamma, and the leak is proportional to the light";
+           "Isc, Voc, Imp and Vmp with the stated Gamma, the leak is proportional to the light, and "
+           "the gap follows from muPmpReq";
 }
 
 ListedModule of_pan(const Listing& pan) {
