@@ -231,7 +231,6 @@ ListedModule of_pan(const Listing& pan) {
   if (pan.has("Width") && pan.has("Height")) {
     m.area_m2 = pan.number("Width", 0.0, 100.0) * pan.number("Height", 0.0, 100.0);
   }
-  const double gap_V = gap_of_technology_eV(pan) * elementary_charge_C / boltzmann_J_K;
   const double T = zero_celsius_K + (pan.has("TRef") ? pan.number("TRef", -100.0, 200.0) : 25.0);
   const double light_W_m2 = pan.has("GRef") ? pan.number("GRef", 0.0, 1e5) : 1000.0;
   m.rated = {light_W_m2,
@@ -244,6 +243,7 @@ ListedModule of_pan(const Listing& pan) {
     fit_rated(pan, m);
     return m;
   }
+  const double gap_V = gap_of_technology_eV(pan) * elementary_charge_C / boltzmann_J_K;
   const double n = pan.number("Gamma", 0.1, 10.0), N = m.cells_in_series;
   const double series_ohm = pan.number("RSerie", -1e-12, 1e6);
   const double shunt_ohm = pan.number("RShunt", 0.0, 1e9);

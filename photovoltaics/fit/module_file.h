@@ -38,8 +38,9 @@ struct ListedModule {
 // open-circuit voltage over 10 K. The gaps of PVsyst: silicon 1.12, CdTe 1.5, CIS 1.03 eV.
 //
 // Throws InputError for other texts, for a name that no row or several rows have, and for values
-// that are missing or that no cell has. PAN files of amorphous silicon are rejected. For those of
-// others with a recombination term (D2MuTau, mostly CdTe) the diode is fitted to the rated figures.
+// that are missing or that no cell has. In PAN files with a recombination term (D2MuTau: CdTe and
+// amorphous silicon) the diode is fitted to the rated figures, and the gap to the slope of the
+// maximum power (muPmpReq). Of amorphous silicon only those are accepted.
 ListedModule module_in(std::string_view text, const std::string& file, const std::string& name);
 
 }  // namespace photorque

@@ -156,6 +156,28 @@ TEST(ModuleFile, CadmiumTellurideFollowsTheTemperatureOfPvsyst) {
   }
 }
 
+// DuPont Apollo DA148-C1, two junctions, of the same collection; its own figures and slope.
+TEST(ModuleFile, AmorphousSiliconWithRecombinationGivesItsRatedFigures) {
+  std::string text = cadmium_telluride;
+  for (const auto& [from, to] : {std::pair{"mtCdTe", "mtuCSi_aSiH"},
+                                 {"NCelS=108", "NCelS=119"},
+                                 {"NCelP=2", "NCelP=1"},
+                                 {"Isc=1.750", "Isc=1.500"},
+                                 {"Voc=87.74", "Voc=157.00"},
+                                 {"Imp=1.601", "Imp=1.210"},
+                                 {"Vmp=70.16", "Vmp=122.00"},
+                                 {"muISC=0.70", "muISC=1.30"},
+                                 {"muPmpReq=-0.340", "muPmpReq=-0.300"},
+                                 {"Gamma=1.484", "Gamma=3.023"},
+                                 {"D2MuTau=0.250", "D2MuTau=2.800"}}) {
+    text = changed(text, from, to);
+  }
+  const ListedModule m = module_in(text, "thin.PAN", "");
+  const double stc_W = power_W(m.predict(1000.0, 298.15));
+  EXPECT_NEAR(stc_W, 1.21 * 122.0, 0.002 * 147.62);
+  EXPECT_NEAR(power_W(m.predict(1000.0, 308.15)) / stc_W, 1.0 - 0.030, 1e-3);
+}
+
 std::string message(const std::string& text, const std::string& name) {
   return refusal_of([&] { module_in(text, "modules.csv", name); });
 }
