@@ -217,10 +217,23 @@ void fit_rated(const Listing& pan, ListedModule& m) {
   set_cell({d.photocurrent_A.value, d.saturation_A.value, d.scale_V.value / one_V,
             d.series_ohm.value, d.shunt_ohm.value},
            m);
-  m.note = "D2MuTau = " + pan.text("D2MuTau") +
-           ": a cell here has no such recombination; RSerie and RShunt were replaced by a fit to "
-           "Isc, Voc, Imp and Vmp with the stated Gamma, the leak is proportional to the light, and "
-           "the gap follows from muPmpReq";
+  m.notes.push_back(
+      "D2MuTau = " + pan.text("D2MuTau") +
+      ": a cell here has no such recombination; RSerie and RShunt were replaced by a fit to "
+      "Isc, Voc, Imp and Vmp with the stated Gamma, the leak is proportional to the light, and "
+      "the gap follows from muPmpReq");
+}
+
+// Parts of a PAN file that the circuit of the cells does not include.
+std::string unused_parts(const Listing& pan) {
+  std::string unused;
+  for (const auto& [key, what] :
+       {std::pair{"BRev", "BRev (reverse breakdown: breakdown_V)"},
+        {"PVObject_IAM", "the IAM profile (angle of incidence: [array.cover])"},
+        {"SubModuleLayout", "SubModuleLayout (wiring: array.circuit)"}}) {
+    if (pan.has(key)) unused += (unused.empty() ? "" : ", ") + std::string(what);
+  }
+  return unused;
 }
 
 ListedModule of_pan(const Listing& pan) {
@@ -231,6 +244,11 @@ ListedModule of_pan(const Listing& pan) {
   if (pan.has("Width") && pan.has("Height")) {
     m.area_m2 = pan.number("Width", 0.0, 100.0) * pan.number("Height", 0.0, 100.0);
   }
+  if (pan.has("CellArea")) {  // in cm²
+    m.area_m2 = 1e-4 * pan.number("CellArea", 0.0, 1e5) * m.cells_in_series * m.strings;
+  }
+  const std::string unused = unused_parts(pan);
+  if (!unused.empty()) m.notes.push_back("not used: " + unused);
   const double T = zero_celsius_K + (pan.has("TRef") ? pan.number("TRef", -100.0, 200.0) : 25.0);
   const double light_W_m2 = pan.has("GRef") ? pan.number("GRef", 0.0, 1e5) : 1000.0;
   m.rated = {light_W_m2,

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "photovoltaics/fit/fit.h"
 
@@ -14,11 +15,11 @@ struct ListedModule {
   std::string name;
   int cells_in_series = 1;
   int strings = 1;       // parallel strings of cells
-  double area_m2 = 0.0;  // area of the module; 0: not stated
+  double area_m2 = 0.0;  // of the module, or of all cells if that of a cell is stated; 0: neither
   CellModel cell;        // for the cell's part of that area, or for 1 m² if it is not stated
   double photocurrent_A = 0.0;  // photocurrent of a cell in the light of `rated`
   RatedPoint rated;
-  std::string note;  // on a circuit that is not the stated one
+  std::vector<std::string> notes;  // on a circuit that is not the stated one, and on unused parts
 
   // Values of the circuit of all cells; the photocurrent is proportional to the light.
   RatedPoint predict(double irradiance_W_m2, double temperature_K) const;

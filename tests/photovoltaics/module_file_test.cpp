@@ -122,7 +122,8 @@ TEST(ModuleFile, APanFileWithRecombinationGivesItsRatedFigures) {
   const ListedModule m =
       module_in(changed(changed(pan, "mtSiMono", "mtCdTe"), "Gamma", "D2MuTau=0.5\r\n  Gamma"),
                 "film.PAN", "");
-  EXPECT_THAT(m.note, testing::HasSubstr("D2MuTau = 0.5"));
+  ASSERT_FALSE(m.notes.empty());
+  EXPECT_THAT(m.notes.back(), testing::HasSubstr("D2MuTau = 0.5"));
   const RatedPoint p = m.predict(1000.0, 298.15), warm = m.predict(1000.0, 308.15);
   EXPECT_NEAR(p.short_circuit_A / 18.67, 1.0, 1e-4);
   EXPECT_NEAR(p.open_circuit_V / 49.04, 1.0, 1e-4);
@@ -176,6 +177,16 @@ TEST(ModuleFile, AmorphousSiliconWithRecombinationGivesItsRatedFigures) {
   const double stc_W = power_W(m.predict(1000.0, 298.15));
   EXPECT_NEAR(stc_W, 1.21 * 122.0, 0.002 * 147.62);
   EXPECT_NEAR(power_W(m.predict(1000.0, 308.15)) / stc_W, 1.0 - 0.030, 1e-3);
+}
+
+TEST(ModuleFile, TheStatedAreaOfACellIsUsedAndUnusedPartsAreNamed) {
+  const ListedModule m = module_in(cadmium_telluride, "cdte.PAN", "");
+  EXPECT_NEAR(m.cell.reference_area_m2, 0.72 / 216.0, 1e-12);
+  EXPECT_THAT(m.notes, testing::Contains(testing::HasSubstr("not used: BRev")));
+  const ListedModule stated =
+      module_in(changed(cadmium_telluride, "  GRef", "  CellArea=31.3\n  GRef"), "cdte.PAN", "");
+  EXPECT_NEAR(stated.cell.reference_area_m2, 31.3e-4, 1e-12);
+  EXPECT_TRUE(module_in(pan, "jinko.PAN", "").notes.empty());
 }
 
 std::string message(const std::string& text, const std::string& name) {

@@ -557,7 +557,7 @@ Product list_module(const ListedModule& module, const Console& console) {
                (module.strings > 1 ? ", " + std::to_string(module.strings) + " in parallel" : ""));
   console.line("  maximum power " + show(given_W) + " W, listed " + show(listed_W) + " W, at " +
                show(rated.irradiance_W_m2) + " W/m² and " + show(rated.temperature_K) + " K");
-  if (!module.note.empty()) console.line("  note: " + module.note);
+  for (const std::string& note : module.notes) console.line("  note: " + note);
   constexpr double usual = 0.01;
   if (std::abs(given_W - listed_W) > usual * listed_W) {
     console.line("  warning: the circuit and the listed maximum power differ by " +
