@@ -146,6 +146,17 @@ TEST_F(ArrayCommand, LightOnTheBackCountsByItsBifaciality) {
   EXPECT_NEAR(power_W[0], power_W[1], 1e-6 * power_W[1]);
   EXPECT_NEAR(power_W[2], power_W[3], 1e-6 * power_W[3]);
   EXPECT_GT(power_W[0], 1.35 * power_W[3]);
+  // All light on the back warms the cells: 2 ε σ (T⁴ − T_s⁴) = α E without power and air.
+  const std::string warm =
+      "[array]\ncells = [8, 1]\nreceiver = \"the front, 1\"\nquantum_efficiency_peak = 0\n"
+      "thermal = {convection_W_m2_K = 0, surroundings_K = 293.15}\n";
+  write("plate.toml", plate(from_below + rear("[8, 2]") + warm + back, 1000));
+  succeed("power " + at("plate.toml") + " --out " + at("out"));
+  EXPECT_NEAR(figure("power_on_cells_W"), 1500.0 * 0.16, 1e-3);
+  EXPECT_NEAR(figure("power_entering_cells_W"), 1400.0 * 0.16, 1e-3);
+  EXPECT_NEAR(figure("cell_temperature_K"),
+              std::pow(0.93 * 1500.0 / (2.0 * 0.84 * 5.670374419e-8) + std::pow(293.15, 4), 0.25),
+              1e-3);
   write("plate.toml", plate(from_below + rear("[4, 2]") + array + back, 1000));
   EXPECT_THAT(refused("power " + at("plate.toml") + " --out " + at("out")),
               HasSubstr("array.back.receiver"));

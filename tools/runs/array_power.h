@@ -32,7 +32,7 @@ struct ArrayPower {
 // evaluated again.
 ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known = nullptr);
 
-// Light on the cells in a traced run; light on the back is weighted by the bifaciality.
+// Light on the cells in a traced run; of that on the back the bifaciality enters.
 ArrayLight light_on(const ArrayPower& array, const OpticalRun& run, std::span<const BinSums> sums);
 
 // Computes the array, in the steady state unless the temperature of the cells is stated. Throws
