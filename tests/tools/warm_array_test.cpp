@@ -65,6 +65,12 @@ TEST_F(WarmArrayCommand, CellsAboveTheirRatedTemperatureAreAWarning) {
               value(hot, "cell_temperature_K") - 320.0, 1e-9);
 }
 
+TEST_F(WarmArrayCommand, PowerStatesSpectrumAndSlope) {
+  const json lit = power("");
+  EXPECT_THAT(out_, HasSubstr("spectrum                light at "));
+  EXPECT_THAT(out_, testing::ContainsRegex("power over temperature  -0\\.[0-9]+ W/K"));
+}
+
 // Cells that hardly cool: beyond some light they give less. With cells of 25 °C more light is more.
 TEST_F(WarmArrayCommand, SweepsJudgeCellsAtTheirTemperature) {
   const std::string plan =

@@ -22,6 +22,7 @@ struct ArrayPower {
   std::vector<double> responsivity_A_W;        // per band of the scene
   std::vector<double> ideal_responsivity_A_W;  // with every photon converted
   std::vector<std::string> notices;            // one line each
+  std::string spectra;                         // of the lamps, in words
   ArrayReport report;
 };
 
@@ -56,7 +57,7 @@ std::optional<std::string> above_rated(const ArrayDesign& design, double kelvin)
 Product array_power_product(const ArrayDesign& design, const ArrayResult& array,
                             const TraceResult& result);
 
-void print_array(const Console& console, const ArrayDesign& design, const ArrayResult& array,
+void print_array(const Console& console, const ArrayPower& read, const ArrayResult& array,
                  const TraceResult& result);
 
 }  // namespace photorque

@@ -25,7 +25,7 @@ PowerRun run_power(const RunOptions& options, const Console& console) {
     run->warn(std::move(*warning));
   }
   print_trace(console, *run, light);
-  print_array(console, array.design, power, light);
+  print_array(console, array, power, light);
   Product product = run->product(light);
   append(product, array_power_product(array.design, power, light));
   append(product, report_array(console, *run, array, light, power));
