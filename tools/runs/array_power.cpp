@@ -206,6 +206,23 @@ Product array_power_product(const ArrayDesign& design, const ArrayResult& array,
   return product;
 }
 
+std::optional<std::string> above_absorbed(const ArrayPower& array, const OpticalRun& run,
+                                          const TraceResult& result, const ArrayResult& power) {
+  double incident_W = 0.0, absorbed_W = 0.0;
+  for (const std::optional<size_t> index : {std::optional(array.flux_map), array.back_map}) {
+    if (!index) continue;
+    const FluxMap map = run.flux_map(*index).flux_map(result.sums[*index]);
+    incident_W += map.incident.power_W.value;
+    absorbed_W += map.absorbed.power_W.value;
+  }
+  if (!(power.efficiency.value * incident_W > absorbed_W)) return {};
+  return "the array delivers " + show_percent(power.efficiency.value) +
+         " of the light on its cells, but their material absorbs only " +
+         show_percent(absorbed_W / incident_W) +
+         ": the quantum efficiency counts all light on the cells; state the cells' own absorptance "
+         "in [[material]]";
+}
+
 void print_array(const Console& console, const ArrayPower& read, const ArrayResult& array,
                  const TraceResult& result) {
   const ArrayDesign& design = read.design;

@@ -57,6 +57,10 @@ std::optional<std::string> above_rated(const ArrayDesign& design, double kelvin)
 Product array_power_product(const ArrayDesign& design, const ArrayResult& array,
                             const TraceResult& result);
 
+// Warning if the array delivers more than its surface absorbs of the light on the cells.
+std::optional<std::string> above_absorbed(const ArrayPower& array, const OpticalRun& run,
+                                          const TraceResult& result, const ArrayResult& power);
+
 void print_array(const Console& console, const ArrayPower& read, const ArrayResult& array,
                  const TraceResult& result);
 

@@ -24,6 +24,7 @@ PowerRun run_power(const RunOptions& options, const Console& console) {
   if (auto warning = above_rated(array.design, power.temperature_K.value)) {
     run->warn(std::move(*warning));
   }
+  if (auto warning = above_absorbed(array, *run, light, power)) run->warn(std::move(*warning));
   print_trace(console, *run, light);
   print_array(console, array, power, light);
   Product product = run->product(light);
