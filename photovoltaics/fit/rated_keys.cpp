@@ -6,9 +6,10 @@ namespace photorque {
 namespace {
 
 namespace rated_key {
+constexpr Range cell_temperatures_K{coldest_cell_K, hottest_cell_K};
 constexpr NumberKey irradiance("irradiance_W_m2", RatedPoint{}.irradiance_W_m2, Range::positive(),
                                "irradiance of the rated point");
-constexpr NumberKey temperature("temperature_K", RatedPoint{}.temperature_K, {1.0, 1000.0},
+constexpr NumberKey temperature("temperature_K", RatedPoint{}.temperature_K, cell_temperatures_K,
                                 "temperature of the cells");
 constexpr NumberKey short_circuit("short_circuit_A", Range::positive(), "current at 0 V");
 constexpr NumberKey open_circuit("open_circuit_V", Range::positive(), "voltage at 0 A");

@@ -233,6 +233,20 @@ TEST_F(ArrayCommand, AssumedSlopesAreNamed) {
   EXPECT_THAT(file_text(at("out/parameters.csv")), HasSubstr("gap_eV,value,"));
 }
 
+TEST_F(ArrayCommand, TemperaturesInCelsiusAreRefusedInKelvin) {
+  write("sheet.toml", "[fit]\ncells_in_series = 72\n" + lg400 + "temperature_K = 25\n");
+  EXPECT_THAT(refused("fit-cell " + at("sheet.toml") + " --out " + at("out")),
+              HasSubstr("temperature_K: found 25, expected a number in [100, 1000] K; 25 °C are "
+                        "298.15 K"));
+  for (const char* key :
+       {"array.temperature_K", "array.rated_temperature_K", "array.thermal.air_K",
+        "array.thermal.start_K", "array.cell_parameters.reference_temperature_K"}) {
+    EXPECT_THAT(refused("power " + nominal_file + " --set " + key + "=-10 --out " + at("out")),
+                HasSubstr("-10 °C are 263.15 K"))
+        << key;
+  }
+}
+
 // A file under other light in both lists is one curve, with the light of [[fit.curve]].
 TEST_F(ArrayCommand, AFileInBothListsIsOneCurve) {
   write("bright.csv", lit_curve(1.0));
