@@ -71,6 +71,16 @@ TEST_F(WarmArrayCommand, PowerStatesSpectrumAndSlope) {
   EXPECT_THAT(out_, testing::ContainsRegex("power over temperature  -0\\.[0-9]+ W/K"));
 }
 
+TEST_F(WarmArrayCommand, TorqueMapsStateTheTemperatureOfTheirPower) {
+  const Outcome got = succeed("torque-map " + lit_stasis +
+                              "--set torque_map.rays=16384 --set torque_map.tilt_deg=[0,20] "
+                              "--set torque_map.heading_deg=[0] --out " +
+                              at("map"));
+  EXPECT_THAT(got.out, HasSubstr("electric_W of the table: cells of "));
+  EXPECT_THAT(got.out, HasSubstr("steady state: both faces in still air"));
+  EXPECT_THAT(file_text(at("map/power_over_attitude.csv")), HasSubstr(",cell_temperature_K"));
+}
+
 // Cells of 16 % or more on a surface that absorbs a tenth of their light.
 TEST_F(WarmArrayCommand, MorePowerThanTheSurfaceAbsorbsIsAWarning) {
   write("plate.obj", "o plate\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl m\nf 1 2 3 4\n");
