@@ -583,7 +583,11 @@ Product list_module(const ListedModule& module, const Console& console) {
     const double peak = efficiency_peak_of(module);
     console.heading("For [array]: this photocurrent in AM1.5G sunlight");
     print_key(console, "quantum_efficiency_peak", peak);
-    if (peak > 1.0) console.line("  warning: above 1: the listed area is too small");
+    if (peak > 1.0) {
+      console.line(
+          "  warning: above 1: this photocurrent needs another quantum efficiency than that shape "
+          "([array.quantum_efficiency]), or the listed area is too small");
+    }
     rows.push_back({"quantum_efficiency_peak", {peak}});
   }
   rows.push_back({"photocurrent_A", {module.photocurrent_A}});
