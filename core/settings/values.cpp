@@ -61,7 +61,15 @@ double Settings::to_number(const SettingsNode& node, std::string_view key, doubl
     throw wrong(in_range());
   }
   const double x = written * factor;
-  if (!is_inside(x, range)) throw wrong(in_range());
+  if (!is_inside(x, range)) {
+    // A temperature in °C below the coldest admitted one, in a key whose unit is K.
+    constexpr double zero_celsius_K = 273.15;
+    const bool is_celsius = unit_of_key(key).unit == "K" && range.low >= 1.0 && x < range.low &&
+                            is_inside(x + zero_celsius_K, range);
+    throw wrong(in_range() + (is_celsius ? "; " + format_setting(written) + " °C are " +
+                                               format_setting(x + zero_celsius_K) + " K"
+                                         : ""));
+  }
   // These limits keep squares and products finite and different from zero, angles accurate within a
   // turn, and positions within the range of single precision. Distances in au (the Sun, planets)
   // may be larger.

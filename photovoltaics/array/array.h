@@ -19,9 +19,9 @@ struct ArrayResult {
   Estimate power_W;  // at the maximum power point
   Estimate voltage_V;
   Estimate current_A;
-  Estimate power_on_cells_W;  // light
+  Estimate power_on_cells_W;  // light on both faces
   // The light on the cells, weighted by the fraction that enters at its angle over the fraction
-  // that enters at normal incidence.
+  // that enters at normal incidence, and on the back by the bifaciality.
   Estimate power_entering_W;
   bool entry_known = false;      // false: all light counts as perpendicular, nothing is subtracted
   Estimate sum_of_cells_W;       // sum of the cells' maximum powers

@@ -19,11 +19,12 @@ constexpr double deep_space_K = 2.725;
 
 namespace thermal_key {
 constexpr CellHeat usual;
-constexpr Range temperatures{1.0, 1000.0};
+constexpr Range temperatures{coldest_cell_K, hottest_cell_K};
 constexpr NumberKey air("air_K", temperatures, "temperature of the surrounding air",
                         {.usually = "`environment.air_temperature_K`, else 293.15"});
 constexpr NumberKey surroundings(
-    "surroundings_K", temperatures, "temperature of the surroundings to which the faces radiate",
+    "surroundings_K", {1.0, hottest_cell_K},
+    "temperature of the surroundings to which the faces radiate",
     {.usually = "`air_K`; with a disturbance `\"orbit\"` 2.725, deep space"});
 constexpr NumberKey convection(
     "convection_W_m2_K", Range::not_negative(),

@@ -7,12 +7,9 @@
 #include <string>
 
 #include "core/settings/settings.h"
+#include "photovoltaics/cell/model.h"
 
 namespace photorque {
-
-// Range of temperatures at which cells are computed. Colder or hotter cells are computed at its
-// limits.
-inline constexpr double coldest_cell_K = 100.0, hottest_cell_K = 1000.0;
 
 // Surroundings of the array, unless `[array.thermal]` states others.
 struct Surroundings {

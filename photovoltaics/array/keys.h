@@ -11,6 +11,8 @@ namespace photorque {
 // Maximum number of cells of an array.
 inline constexpr int most_cells = 100000;
 
+inline constexpr Range cell_temperatures_K{coldest_cell_K, hottest_cell_K};
+
 inline constexpr double bypass_drop_V = 0.5;
 namespace diode_key {
 inline constexpr Diode usual;
@@ -29,7 +31,7 @@ namespace cell_key {
 inline constexpr NumberKey reference_area(
     "reference_area_m2", Range::positive(),
     "area to which currents and resistances refer; required with them");
-inline constexpr NumberKey reference_temperature("reference_temperature_K", Range::positive(),
+inline constexpr NumberKey reference_temperature("reference_temperature_K", cell_temperatures_K,
                                                  "temperature T₀ to which the parameters refer");
 inline constexpr NumberKey saturation_1(
     "saturation_1_A", Range::not_negative(),
@@ -130,13 +132,13 @@ inline constexpr NumberKey gap("gap_m", 0.0, Range::not_negative(),
 inline constexpr NumberKey margin("margin_m", 0.0, Range::not_negative(),
                                   "margin around the cells, in the same unit");
 inline constexpr NumberKey temperature(
-    "temperature_K", {1.0, 1000.0},
+    "temperature_K", cell_temperatures_K,
     "temperature of cells and diodes in every run. The `saturation_A` of the diodes is valid at "
     "this temperature, or at 298.15 K if it is not given; it is independent of the temperature of "
     "the cells",
     {.usually = "the steady state of `[array.thermal]`, over time its balance; `diagnose` 298.15"});
 inline constexpr NumberKey rated_temperature(
-    "rated_temperature_K", ArrayDesign{}.rated_temperature_K, {1.0, 1000.0},
+    "rated_temperature_K", ArrayDesign{}.rated_temperature_K, cell_temperatures_K,
     "rated temperature of the cells; warmer cells give a warning. 85 °C is the maximum of the "
     "thermal cycling test of modules (IEC 61215)");
 inline constexpr TableKey thermal(

@@ -67,22 +67,30 @@ void add_back_light(ArrayLight& light, const ArrayLight& back, double fraction) 
     throw InputError({}, "array.back.receiver", "another grid than that of array.receiver",
                      "a flux_map of the same node, axes and bins with side = \"back\"");
   }
-  for (size_t i = 0; i < back.power_W.sums.size(); ++i) {
-    light.power_W.sums[i] += fraction * back.power_W.sums[i];
-  }
-  for (size_t i = 0; i < light.power_W.bound.size(); ++i) {
-    light.power_W.bound[i] += fraction * back.power_W.bound_of(i);
-  }
-  if (light.entry.bins == 0) return;
   const size_t bins = light.power_W.bins;
-  for (int r = 0; r < light.power_W.replicates; ++r) {
-    const auto from_back = back.power_W.of(r);
-    for (size_t half = 0; half < 2; ++half) {
-      for (size_t bin = 0; bin < bins; ++bin) {
-        light.entry.sums[static_cast<size_t>(r) * light.entry.bins + half * bins + bin] +=
-            fraction * from_back[bin];
+  BinSums& entry = light.entry;
+  if (entry.bins == 0) {  // all light of the front enters
+    entry = {2 * bins, light.power_W.replicates, {}, {}};
+    for (int r = 0; r < entry.replicates; ++r) {
+      const auto front = light.power_W.of(r);
+      for (int half = 0; half < 2; ++half) {
+        entry.sums.insert(entry.sums.end(), front.begin(), front.end());
       }
     }
+  }
+  for (int r = 0; r < entry.replicates; ++r) {
+    const auto from_back = back.power_W.of(r);
+    const size_t all = static_cast<size_t>(r) * entry.bins, entering = all + bins;
+    for (size_t bin = 0; bin < bins; ++bin) {
+      entry.sums[all + bin] += from_back[bin];
+      entry.sums[entering + bin] += fraction * from_back[bin];
+    }
+  }
+  for (size_t i = 0; i < back.power_W.sums.size(); ++i) {
+    light.power_W.sums[i] += back.power_W.sums[i];
+  }
+  for (size_t i = 0; i < light.power_W.bound.size(); ++i) {
+    light.power_W.bound[i] += back.power_W.bound_of(i);
   }
 }
 

@@ -27,8 +27,8 @@ struct ArrayLight {
 ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums,
                        const BinSums& entry = {});
 
-// Adds `fraction` of the light on the back of the same surface. It counts as perpendicular. Throws
-// InputError unless the grids are equal.
+// Adds the light on the back of the same surface, of which `fraction` enters the cells at any
+// angle. Throws InputError unless the grids are equal.
 void add_back_light(ArrayLight& light, const ArrayLight& back, double fraction);
 
 // Light of a known irradiance on a whole grid, without error: one replicate, one band.

@@ -32,7 +32,10 @@ std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs
   const double on_cells_W = array.power_on_cells_W.value;
   stages.push_back({"light on the cells", on_cells_W, "gaps between the cells"});
   const double entering_W = array.power_entering_W.value;
-  if (array.entry_known) stages.push_back({"light that enters", entering_W, "angle of incidence"});
+  if (array.entry_known) {
+    stages.push_back({"light that enters", entering_W,
+                      in.is_bifacial ? "angle of incidence, bifaciality" : "angle of incidence"});
+  }
   stages.push_back({"photons converted", entering_W * in.quantum_efficiency,
                     "quantum efficiency, reflection included"});
   double cells_W = 0.0;

@@ -16,6 +16,7 @@ struct LossInputs {
   double on_receiver_W = 0.0;                  // part of it on the whole receiver
   double photon_V = 1.7;                       // mean energy of a photon over the elementary charge
   double quantum_efficiency = 1.0;             // mean external
+  bool is_bifacial = false;                    // with light on the back of the cells
   std::optional<double> wall_plug_efficiency;  // lamps: light over electric power
   std::optional<double> collimator_efficiency;
   std::optional<double> tracker_efficiency;

@@ -11,6 +11,10 @@ namespace photorque {
 // E₀ and s of silicon: De Soto, see below.
 inline constexpr double silicon_gap_eV = 1.121, silicon_gap_slope_1_K = -0.0002677;
 
+// Range of temperatures at which cells are computed. Colder or hotter cells are computed at its
+// limits.
+inline constexpr double coldest_cell_K = 100.0, hottest_cell_K = 1000.0;
+
 // The circuit of a cell of a known area at a known temperature, and its dependence on both.
 //
 // Temperature: I_i(T) = I_i(T₀) (T/T₀)³ exp(f_i (E(T₀)/kT₀ − E(T)/kT)), with f = 1 for the

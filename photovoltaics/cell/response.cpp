@@ -45,17 +45,6 @@ BandFraction fraction_of(const QuantumEfficiency& efficiency, const Spectrum& sp
   return fraction;
 }
 
-std::string name_of(const Spectrum& spectrum) {
-  switch (spectrum.shape) {
-    case Spectrum::Shape::gaussian:
-      return "the light at " + readable_number(1e9 * spectrum.centre_m, 4) + " nm";
-    case Spectrum::Shape::blackbody:
-      return "the light of a black body of " + readable_number(spectrum.temperature_K, 4) + " K";
-    default:
-      return "the sunlight";
-  }
-}
-
 }  // namespace
 
 double QuantumEfficiency::at(double wavelength) const {
@@ -112,6 +101,19 @@ double responsivity_A_W(const QuantumEfficiency& efficiency, double wavelength_m
          (planck_J_s * speed_of_light_m_s);
 }
 
+std::string in_words(const Spectrum& spectrum) {
+  switch (spectrum.shape) {
+    case Spectrum::Shape::gaussian:
+      return "light at " + readable_number(1e9 * spectrum.centre_m, 4) + " nm";
+    case Spectrum::Shape::blackbody:
+      return "light of a black body of " + readable_number(spectrum.temperature_K, 4) + " K";
+    case Spectrum::Shape::am0:
+      return "sunlight AM0";
+    default:
+      return "sunlight AM1.5G";
+  }
+}
+
 BandValues band_responsivity_A_W(const QuantumEfficiency& efficiency, const Bands& bands,
                                  std::span<const WeighedSpectrum> spectra) {
   BandValues responsivity{};
@@ -140,8 +142,8 @@ std::vector<std::string> light_outside(const QuantumEfficiency& efficiency,
     const double cut_off =
         parts[0] * efficiency.efficiency.front() + parts[2] * efficiency.efficiency.back();
     if (outside < nearly_all && cut_off < noticeable) continue;
-    const std::string line = readable_number(100.0 * outside, 3) + " % of " +
-                             name_of(one.spectrum) + " lies outside of " +
+    const std::string line = readable_number(100.0 * outside, 3) + " % of the " +
+                             in_words(one.spectrum) + " lies outside of " +
                              readable_number(1e9 * from_m, 4) + " to " +
                              readable_number(1e9 * to_m, 4) +
                              " nm, where the cells' quantum efficiency is stated, and gives no "

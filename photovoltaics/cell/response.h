@@ -45,6 +45,9 @@ struct WeighedSpectrum {
   double power = 1.0;
 };
 
+// "light at 850 nm", "light of a black body of 5772 K", "sunlight AM1.5G".
+std::string in_words(const Spectrum& spectrum);
+
 // Ampere per watt of the light in each band, averaged over the spectra in proportion to their power
 // in it; zero for a band without light. The integral is a sum over steps of 0.5 nm (1e-5 relative
 // for smooth spectra); a line is taken at its wavelength.

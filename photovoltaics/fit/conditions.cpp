@@ -385,7 +385,7 @@ ConditionsFit described(const Task& task, const inference::Fit& fit,
 }
 
 // The curves that one diode may describe; `omitted` receives the others. The irradiance of single
-// readings is kept for curves that fit better with it.
+// readings is kept unless it doubles the scatter of its curve.
 std::vector<CurveAt> described_curves(std::span<const CurveAt> curves, const SweepNoise& noise,
                                       std::vector<size_t>& kept,
                                       std::vector<ConditionsFit::Omitted>& omitted) {

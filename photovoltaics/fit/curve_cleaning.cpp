@@ -72,6 +72,28 @@ void take_dead(IvSweep& sweep, CurveCleaning& cleaning) {
   if (cleaning.dead > 0) take(out, sweep, cleaning);
 }
 
+// The step in which the largest currents are written; 0 if they are not multiples of a step. It is
+// the smallest difference of two currents, or a half or a third of that if no two are nearer.
+double step_of_readings_A(const IvSweep& sweep) {
+  std::vector<double> falling_A = sweep.current_A;
+  std::ranges::sort(falling_A, std::greater());
+  double smallest_A = falling_A[0];
+  for (size_t k = 1; k < falling_A.size(); ++k) {
+    const double fall_A = falling_A[k - 1] - falling_A[k];
+    if (fall_A > 0.0) smallest_A = std::min(smallest_A, fall_A);
+  }
+  constexpr double near = 20.0, close = 0.2;
+  for (const double part : {1.0, 2.0, 3.0}) {
+    const double step_A = smallest_A / part;
+    const auto is_multiple = [&](double current_A) {
+      const double steps = (falling_A[0] - current_A) / step_A;
+      return steps > near || std::abs(steps - std::round(steps)) < close;
+    };
+    if (std::ranges::all_of(falling_A, is_multiple)) return step_A;
+  }
+  return 0.0;
+}
+
 // A falling line through two readings, and the number of readings that agree with it.
 struct Line {
   double at_zero_A = 0.0, slope_S = 0.0;
@@ -190,6 +212,33 @@ UnsteadyLight take_unsteady_light(IvSweep& sweep, double noise) {
   return found;
 }
 
+RangeLimit take_range_limit(IvSweep& sweep) {
+  using namespace curve_cleaning;
+  const std::vector<size_t> order = order_of(sweep);
+  if (order.size() < 20) return {};
+  const double largest_A = std::ranges::max(sweep.current_A);
+  size_t longest = 0, run = 0, last = 0;
+  for (size_t k = 0; k < order.size(); ++k) {
+    run = sweep.current_A[order[k]] == largest_A ? run + 1 : 0;
+    longest = std::max(longest, run);
+    if (run > 0) last = k;
+  }
+  constexpr size_t fewest = 3, beside = 3;
+  constexpr double abrupt = 10.0;
+  if (longest < fewest || last + beside >= order.size()) return {};
+  std::vector<double> next_A;
+  for (size_t k = 1; k <= beside; ++k) next_A.push_back(sweep.current_A[order[last + k]]);
+  if (largest_A - upper_median(next_A) < abrupt * step_of_readings_A(sweep)) return {};
+  RangeLimit limit{0, largest_A};
+  std::vector<char> out(order.size(), 0);
+  for (size_t i = 0; i < out.size(); ++i) {
+    out[i] = sweep.current_A[i] == largest_A;
+    limit.readings += static_cast<size_t>(out[i]);
+  }
+  sweep = sweep.without(out);
+  return limit;
+}
+
 CurveCleaning clean_curve(IvSweep& sweep, bool dark_parts) {
   using namespace curve_cleaning;
   CurveCleaning cleaning;
@@ -206,10 +255,10 @@ CurveCleaning clean_curve(IvSweep& sweep, bool dark_parts) {
   const auto volts = [&](size_t k) { return sweep.voltage_V[order[k]]; };
   const auto amperes = [&](size_t k) { return sweep.current_A[order[k]]; };
   constexpr double near_zero = 0.03, least_fall = 0.01, held = 0.25;
-  // The longest tail within the band about zero, then the longest part of it with a constant
+  // The longest tail below the band about zero, then the longest part of it with a constant
   // current.
   size_t band = order.size();
-  while (band > 0 && std::abs(amperes(band - 1)) <= near_zero * scale_A) --band;
+  while (band > 0 && amperes(band - 1) <= near_zero * scale_A) --band;
   for (size_t first = band; first + 1 < order.size(); ++first) {
     double low = amperes(first), high = low;
     for (size_t k = first; k < order.size(); ++k) {

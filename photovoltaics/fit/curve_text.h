@@ -73,7 +73,7 @@ bool reverse_negative(IvSweep& sweep);
 
 // Points of a curve that are left out because no cell produces them.
 struct CurveCleaning {
-  size_t clipped = 0;  // points beyond open circuit where the meter shows no current
+  size_t clipped = 0;  // points beyond open circuit where the meter shows a constant current
   double clipped_from_V = 0.0, clipped_A = 0.0;  // their first voltage and their usual current
   size_t spikes = 0;                             // single readings far from both neighbours
   size_t dead = 0;           // readings without current below voltages at which a current flows
@@ -84,11 +84,24 @@ struct CurveCleaning {
 // it falls with the voltage and flows at higher voltages), and the tail beyond open circuit in
 // which the current is constant (a source that blocks reverse current shows 0 or a small offset).
 // Beyond open circuit the current of a cell falls more steeply at higher voltages. A tail consists
-// of points at the highest voltages. Their currents are within 3 % of zero and span less than a
-// quarter of the fall that the steepest slope before them would cause. In the curve of a module
+// of points at the highest voltages. Their currents are below 3 % of the largest one, also negative
+// by any amount, and span less than a quarter of the fall that the steepest slope before them would
+// cause. In the curve of a module
 // with `dark_parts`, a tail with a current of at least 0 over more than 15 % of the voltage is
 // kept: the curve of a module with a dark cell has one.
 CurveCleaning clean_curve(IvSweep& sweep, bool dark_parts = false);
+
+// Readings at the upper end of the meter's range that were removed, and their current.
+struct RangeLimit {
+  size_t readings = 0;
+  double current_A = 0.0;
+};
+
+// Removes the readings that equal the largest current if at least three of them are adjacent, and
+// the median of the next three is lower by ten steps in which the currents are written. A plateau
+// due to rounding ends step by step in a curve of 20 readings or more; of fewer, nothing is
+// removed.
+RangeLimit take_range_limit(IvSweep& sweep);
 
 // Readings of the flat part of a curve, below 0.6 of its highest voltage, that were removed because
 // the light was different.

@@ -267,8 +267,11 @@ SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise) {
     std::vector<IvSweep> lit(sweeps.begin(), sweeps.end());
     std::vector<OutlierReading> outliers;
     inference::Fit trial = best_fit(lit, noise, outliers);
-    result.uses_light = std::isfinite(trial.chi2) &&
-                        (!std::isfinite(best.chi2) || trial.variance() < best.variance());
+    // A linear change of the light has the curve of a leak: the scatter then does not decide.
+    constexpr double clearly_worse = 4.0;  // twice the scatter
+    result.uses_light =
+        std::isfinite(trial.chi2) &&
+        (!std::isfinite(best.chi2) || trial.variance() < clearly_worse * best.variance());
     if (result.uses_light) {
       best = std::move(trial);
       kept = std::move(lit);

@@ -85,7 +85,7 @@ struct SweepFit {
 };
 
 // Fits one set of parameters to all sweeps (repeats in equal light). The irradiance of single
-// readings is used if the fit is better with it. If both directions of the voltage occur, τ of the
+// readings is used unless it doubles the scatter. If both directions of the voltage occur, τ of the
 // charge storage is fitted. It is reported if it is more than three standard errors from zero.
 //
 // Generalised least squares in the current. The covariance of a sweep is that of its noise; the

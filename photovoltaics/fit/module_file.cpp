@@ -194,27 +194,46 @@ double gap_of_technology_eV(const Listing& pan) {
 }
 
 // Sets the cell of a module with a recombination term, for which a cell here has no parameter: the
-// diode of the stated Gamma with the rated figures and slopes. Its leak is proportional to the
-// light as that recombination is.
+// diode of the stated Gamma with the rated figures. Its leak is proportional to the light as that
+// recombination is. The gap gives the slope of the maximum power, muPmpReq, to which PVsyst adjusts
+// muGamma; muVocSpec is only information there.
 void fit_rated(const Listing& pan, ListedModule& m) {
-  constexpr double of_milli = 1e-3;
+  constexpr double of_milli = 1e-3, of_percent = 1e-2;
   const RatedPoint& rated = m.rated;
-  const TemperatureSlopes slopes{
-      of_milli * pan.number("muISC", -1e5, 1e5) / rated.short_circuit_A,
-      of_milli * pan.number("muVocSpec", -1e6, 0.0) / rated.open_circuit_V};
+  const TemperatureSlopes slopes{of_milli * pan.number("muISC", -1e5, 1e5) / rated.short_circuit_A};
   const double one_V = m.cells_in_series * thermal_V(rated.temperature_K);
   const RatedFit fit = fit_rated_points(
       std::array{rated}, slopes, one_V * pan.number("Gamma", 0.1, 10.0), {}, ShuntLaw::inverse);
   const SingleDiode& d = fit.diode;
-  m.cell.gap_eV = fit.model.gap_eV;
+  const CellFigure power_W = [](const CellCurve& cell, double light_A) {
+    return cell.maximum_power(light_A).power_W();
+  };
+  const double light_A = d.photocurrent_A.value;
+  m.cell.gap_eV = gap_of_slope_eV(fit.model, light_A, slopes.short_circuit_1_K, power_W,
+                                  of_percent * pan.number("muPmpReq", -5.0, 0.0) *
+                                      power_W(CellCurve(fit.model.reference), light_A));
   m.cell.gap_slope_1_K = fit.model.gap_slope_1_K;
   m.cell.photocurrent_slope_1_K = fit.model.photocurrent_slope_1_K;
   set_cell({d.photocurrent_A.value, d.saturation_A.value, d.scale_V.value / one_V,
             d.series_ohm.value, d.shunt_ohm.value},
            m);
-  m.note = "D2MuTau = " + pan.text("D2MuTau") +
-           ": a cell here has no such recombination; RSerie and RShunt were replaced by a fit to "
-           "Isc, Voc, Imp and Vmp with the stated Gamma, and the leak is proportional to the light";
+  m.notes.push_back(
+      "D2MuTau = " + pan.text("D2MuTau") +
+      ": a cell here has no such recombination; RSerie and RShunt were replaced by a fit to "
+      "Isc, Voc, Imp and Vmp with the stated Gamma, the leak is proportional to the light, and "
+      "the gap follows from muPmpReq");
+}
+
+// Parts of a PAN file that the circuit of the cells does not include.
+std::string unused_parts(const Listing& pan) {
+  std::string unused;
+  for (const auto& [key, what] :
+       {std::pair{"BRev", "BRev (reverse breakdown: breakdown_V)"},
+        {"PVObject_IAM", "the IAM profile (angle of incidence: [array.cover])"},
+        {"SubModuleLayout", "SubModuleLayout (wiring: array.circuit)"}}) {
+    if (pan.has(key)) unused += (unused.empty() ? "" : ", ") + std::string(what);
+  }
+  return unused;
 }
 
 ListedModule of_pan(const Listing& pan) {
@@ -225,7 +244,11 @@ ListedModule of_pan(const Listing& pan) {
   if (pan.has("Width") && pan.has("Height")) {
     m.area_m2 = pan.number("Width", 0.0, 100.0) * pan.number("Height", 0.0, 100.0);
   }
-  const double gap_V = gap_of_technology_eV(pan) * elementary_charge_C / boltzmann_J_K;
+  if (pan.has("CellArea")) {  // in cm²
+    m.area_m2 = 1e-4 * pan.number("CellArea", 0.0, 1e5) * m.cells_in_series * m.strings;
+  }
+  const std::string unused = unused_parts(pan);
+  if (!unused.empty()) m.notes.push_back("not used: " + unused);
   const double T = zero_celsius_K + (pan.has("TRef") ? pan.number("TRef", -100.0, 200.0) : 25.0);
   const double light_W_m2 = pan.has("GRef") ? pan.number("GRef", 0.0, 1e5) : 1000.0;
   m.rated = {light_W_m2,
@@ -238,6 +261,7 @@ ListedModule of_pan(const Listing& pan) {
     fit_rated(pan, m);
     return m;
   }
+  const double gap_V = gap_of_technology_eV(pan) * elementary_charge_C / boltzmann_J_K;
   const double n = pan.number("Gamma", 0.1, 10.0), N = m.cells_in_series;
   const double series_ohm = pan.number("RSerie", -1e-12, 1e6);
   const double shunt_ohm = pan.number("RShunt", 0.0, 1e9);

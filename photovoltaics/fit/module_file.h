@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "photovoltaics/fit/fit.h"
 
@@ -14,11 +15,11 @@ struct ListedModule {
   std::string name;
   int cells_in_series = 1;
   int strings = 1;       // parallel strings of cells
-  double area_m2 = 0.0;  // area of the module; 0: not stated
+  double area_m2 = 0.0;  // of the module, or of all cells if that of a cell is stated; 0: neither
   CellModel cell;        // for the cell's part of that area, or for 1 m² if it is not stated
   double photocurrent_A = 0.0;  // photocurrent of a cell in the light of `rated`
   RatedPoint rated;
-  std::string note;  // on a circuit that is not the stated one
+  std::vector<std::string> notes;  // on a circuit that is not the stated one, and on unused parts
 
   // Values of the circuit of all cells; the photocurrent is proportional to the light.
   RatedPoint predict(double irradiance_W_m2, double temperature_K) const;
@@ -38,8 +39,9 @@ struct ListedModule {
 // open-circuit voltage over 10 K. The gaps of PVsyst: silicon 1.12, CdTe 1.5, CIS 1.03 eV.
 //
 // Throws InputError for other texts, for a name that no row or several rows have, and for values
-// that are missing or that no cell has. PAN files of amorphous silicon are rejected. For those of
-// others with a recombination term (D2MuTau, mostly CdTe) the diode is fitted to the rated figures.
+// that are missing or that no cell has. In PAN files with a recombination term (D2MuTau: CdTe and
+// amorphous silicon) the diode is fitted to the rated figures, and the gap to the slope of the
+// maximum power (muPmpReq). Of amorphous silicon only those are accepted.
 ListedModule module_in(std::string_view text, const std::string& file, const std::string& name);
 
 }  // namespace photorque

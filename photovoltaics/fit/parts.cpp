@@ -30,18 +30,25 @@ CellParameters SingleDiode::parameters(double temperature_K) const {
                       temperature_K);
 }
 
-double gap_of_voltage_slope_eV(const CellModel& model, double light_A, double growth_1_K,
-                               double slope_V_K) {
+double gap_of_slope_eV(const CellModel& model, double light_A, double growth_1_K,
+                       const CellFigure& figure, double slope_1_K) {
   constexpr double step_K = 10.0;
   const double temperature_K = model.reference.temperature_K;
-  const double wanted_V = CellCurve(model.reference).open_circuit_V(light_A) + step_K * slope_V_K;
+  const double wanted = figure(CellCurve(model.reference), light_A) + step_K * slope_1_K;
   const auto is_below = [&](double gap_eV) {
     CellModel trial = model;
     trial.gap_eV = gap_eV;
-    return CellCurve(parameters_at(trial, model.reference_area_m2, temperature_K + step_K))
-               .open_circuit_V(light_A * (1.0 + step_K * growth_1_K)) > wanted_V;
+    const CellCurve warm(parameters_at(trial, model.reference_area_m2, temperature_K + step_K));
+    return figure(warm, light_A * (1.0 + step_K * growth_1_K)) > wanted;
   };
   return bisect(0.01, 20.0, is_below, {60}).middle();
+}
+
+double gap_of_voltage_slope_eV(const CellModel& model, double light_A, double growth_1_K,
+                               double slope_V_K) {
+  return gap_of_slope_eV(
+      model, light_A, growth_1_K,
+      [](const CellCurve& cell, double in_A) { return cell.open_circuit_V(in_A); }, slope_V_K);
 }
 
 void check_sweep(const IvSweep& sweep) {

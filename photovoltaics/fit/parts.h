@@ -34,8 +34,13 @@ inline bool reasonable(const Eigen::VectorXd& x) {
   return x.allFinite() && (x.array().abs() < 300.0).all();
 }
 
-// The gap E₀ in (0.01, 20) eV with which V_oc of the device changes by `slope_V_K` over the next 10
-// K above the model's temperature. The photocurrent `light_A` meanwhile grows by `growth_1_K`.
+// The gap E₀ in (0.01, 20) eV with which a figure of the device that falls with the temperature
+// changes by `slope_1_K` times 10 K over the next 10 K above the model's temperature. The
+// photocurrent `light_A` meanwhile grows by `growth_1_K`.
+using CellFigure = std::function<double(const CellCurve& cell, double light_A)>;
+double gap_of_slope_eV(const CellModel& model, double light_A, double growth_1_K,
+                       const CellFigure& figure, double slope_1_K);
+// That of V_oc [V].
 double gap_of_voltage_slope_eV(const CellModel& model, double light_A, double growth_1_K,
                                double slope_V_K);
 

@@ -1,12 +1,15 @@
 #include "photovoltaics/fit/rated_keys.h"
 
+#include "core/text/parse.h"
+
 namespace photorque {
 namespace {
 
 namespace rated_key {
+constexpr Range cell_temperatures_K{coldest_cell_K, hottest_cell_K};
 constexpr NumberKey irradiance("irradiance_W_m2", RatedPoint{}.irradiance_W_m2, Range::positive(),
                                "irradiance of the rated point");
-constexpr NumberKey temperature("temperature_K", RatedPoint{}.temperature_K, {1.0, 1000.0},
+constexpr NumberKey temperature("temperature_K", RatedPoint{}.temperature_K, cell_temperatures_K,
                                 "temperature of the cells");
 constexpr NumberKey short_circuit("short_circuit_A", Range::positive(), "current at 0 V");
 constexpr NumberKey open_circuit("open_circuit_V", Range::positive(), "voltage at 0 A");
@@ -36,6 +39,16 @@ std::vector<Key> rated_point_keys() {
 TemperatureSlopes read_rated_slopes(const Settings& settings) {
   return {settings.get(rated_key::short_circuit_slope),
           settings.get(rated_key::open_circuit_slope)};
+}
+
+std::string assumed_slopes(const Settings& settings) {
+  std::string keys;
+  for (const NumberKey& key : {rated_key::open_circuit_slope, rated_key::short_circuit_slope}) {
+    if (settings.has(key)) continue;
+    keys +=
+        (keys.empty() ? "" : ", ") + std::string(key.name) + " = " + shortest(settings.get(key));
+  }
+  return keys;
 }
 
 std::vector<Key> rated_slope_keys() {

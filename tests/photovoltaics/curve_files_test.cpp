@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -50,6 +51,55 @@ TEST(PhotovoltaicFit, ATailThatTheMeterMadeIsLeftOut) {
       EXPECT_NEAR(fit.diode.scale_V.value / 0.025693, 1.1, 0.02);
       EXPECT_NEAR(fit.diode.photocurrent_A.value, 8.0, 0.01);
     }
+  }
+}
+
+// The module of the other tests' equation, 9 A, n 1.1, R_s 0.3 Ω, R_sh 300 Ω of 60 cells, in steps
+// of 0.25 V to 45 V, read by a meter with a range from `low_A` to `high_A` in steps of `step_A`.
+IvSweep in_range(double low_A, double high_A, double step_A) {
+  ivcurves::Truth truth{9.0, 5e-10, 0.3, 300.0, 1.1, 60};
+  const CellCurve module(truth.parameters());
+  IvSweep sweep;
+  for (int i = 0; i <= 180; ++i) {
+    const double noise =
+        std::sqrt(12.0) * (unit_interval(hash_words(7, static_cast<uint64_t>(i))) - 0.5);
+    const double exact_A = module.current_A(9.0, 0.25 * i) * (1.0 + 5e-4 * noise);
+    sweep.voltage_V.push_back(0.25 * i);
+    sweep.current_A.push_back(std::clamp(step_A * std::round(exact_A / step_A), low_A, high_A));
+  }
+  return sweep;
+}
+
+TEST(PhotovoltaicFit, ReadingsAtEitherEndOfTheRangeAreLeftOut) {
+  constexpr double scale_V = 1.1 * 60 * 0.0256926;
+  for (const double low_A : {-0.02, -0.1, -0.5, -1.0, -4.0}) {
+    IvSweep sweep = in_range(low_A, 20.0, 1e-4);
+    const size_t made = static_cast<size_t>(std::ranges::count(sweep.current_A, low_A));
+    EXPECT_EQ(clean_curve(sweep).clipped, made) << low_A;
+    EXPECT_EQ(take_range_limit(sweep).readings, 0u) << low_A;
+    const SweepFit fit = fit_sweeps(std::array{sweep}, {});
+    EXPECT_NEAR(fit.diode.scale_V.value / scale_V, 1.0, 0.015) << low_A;
+    EXPECT_LT(fit.diode.scale_V.standard_error, 0.01 * scale_V) << low_A;
+  }
+  for (const double high_A : {8.5, 8.9}) {
+    IvSweep sweep = in_range(-20.0, high_A, 1e-4);
+    const size_t made = static_cast<size_t>(std::ranges::count(sweep.current_A, high_A));
+    EXPECT_EQ(clean_curve(sweep).clipped, 0u);
+    const RangeLimit limit = take_range_limit(sweep);
+    EXPECT_EQ(limit.readings, made) << high_A;
+    EXPECT_EQ(limit.current_A, high_A);
+    const Estimate scale = fit_sweeps(std::array{sweep}, {}).diode.scale_V;
+    EXPECT_NEAR(scale.value, scale_V, 3.0 * scale.standard_error) << high_A;
+    EXPECT_LT(scale.standard_error, 0.1 * scale_V) << high_A;
+  }
+}
+
+// Coarse steps make plateaus of equal readings too; the curve leaves those step by step.
+TEST(PhotovoltaicFit, APlateauOfRoundedReadingsStays) {
+  for (const double step_A : {0.001, 0.01, 0.05, 0.1}) {
+    IvSweep sweep = in_range(-20.0, 20.0, step_A);
+    EXPECT_EQ(take_range_limit(sweep).readings, 0u) << step_A;
+    EXPECT_EQ(clean_curve(sweep).clipped, 0u) << step_A;
   }
 }
 
@@ -332,6 +382,16 @@ TEST(PhotovoltaicFit, ReadingsUnderOtherLightAreLeftOut) {
   EXPECT_EQ(fit.points, 100u);
   EXPECT_NEAR(fit.diode.photocurrent_A.value, 9.0, 0.01);
   EXPECT_NEAR(fit.diode.shunt_ohm.value, 200.0, 8.0);
+  // A fall in proportion to the voltage has the curve of a leak, and no larger scatter.
+  for (const double fall : {0.01, 0.03, 0.1}) {
+    const auto falling = [=](int i) { return 1.0 - fall * (i / 99.0 - 0.5); };
+    IvSweep monitored = module.sweep(falling);
+    for (int i = 0; i < 100; ++i) monitored.light.push_back(falling(i));
+    const SweepFit lit = fit_sweeps(std::array{monitored}, {});
+    EXPECT_TRUE(lit.uses_light) << fall;
+    EXPECT_NEAR(lit.diode.shunt_ohm.value, 200.0, 8.0) << fall;
+    EXPECT_NEAR(lit.diode.photocurrent_A.value, 9.0, 0.01) << fall;
+  }
   // A sensor that scatters while the light is steady is not.
   IvSweep scattered = module.sweep([](int) { return 1.0; });
   for (uint64_t i = 0; i < 100; ++i) {

@@ -65,6 +65,40 @@ TEST_F(WarmArrayCommand, CellsAboveTheirRatedTemperatureAreAWarning) {
               value(hot, "cell_temperature_K") - 320.0, 1e-9);
 }
 
+TEST_F(WarmArrayCommand, PowerStatesSpectrumAndSlope) {
+  const json lit = power("");
+  EXPECT_THAT(out_, HasSubstr("spectrum                light at "));
+  EXPECT_THAT(out_, testing::ContainsRegex("power over temperature  -0\\.[0-9]+ W/K"));
+}
+
+TEST_F(WarmArrayCommand, TorqueMapsStateTheTemperatureOfTheirPower) {
+  const Outcome got = succeed("torque-map " + lit_stasis +
+                              "--set torque_map.rays=16384 --set torque_map.tilt_deg=[0,20] "
+                              "--set torque_map.heading_deg=[0] --out " +
+                              at("map"));
+  EXPECT_THAT(got.out, HasSubstr("electric_W of the table: cells of "));
+  EXPECT_THAT(got.out, HasSubstr("steady state: both faces in still air"));
+  EXPECT_THAT(file_text(at("map/power_over_attitude.csv")), HasSubstr(",cell_temperature_K"));
+}
+
+// Cells of 16 % or more on a surface that absorbs a tenth of their light.
+TEST_F(WarmArrayCommand, MorePowerThanTheSurfaceAbsorbsIsAWarning) {
+  write("plate.obj", "o plate\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl m\nf 1 2 3 4\n");
+  const auto warnings = [&](const std::string& material) {
+    write("plate.toml",
+          "[scene]\nfile = \"plate.obj\"\nunit = \"m\"\n[[material]]\nname = \"m\"\n" + material +
+              "[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\nangular_radius_deg = 0\n"
+              "spectrum = \"AM1.5G\"\n[[receiver]]\nkind = \"flux_map\"\nnode = \"plate\"\n"
+              "bins = [4, 4]\n[trace]\nrays = 16384\n[array]\ncells = [4, 4]\n");
+    out_ = succeed("power " + at("plate.toml") + " --out " + at("out")).out;
+    return summary().at("warnings").dump();
+  };
+  EXPECT_EQ(warnings("absorptance = 1\n"), "[]");
+  EXPECT_THAT(out_, HasSubstr("spectrum                sunlight AM1.5G"));
+  EXPECT_THAT(warnings("absorptance = 0.1\nspecular = 0.9\n"),
+              HasSubstr("their material absorbs only 10 %"));
+}
+
 // Cells that hardly cool: beyond some light they give less. With cells of 25 °C more light is more.
 TEST_F(WarmArrayCommand, SweepsJudgeCellsAtTheirTemperature) {
   const std::string plan =

@@ -2,21 +2,23 @@
 #pragma once
 
 #include "core/settings/typed_keys.h"
+#include "photovoltaics/cell/model.h"
 
 namespace photorque {
 
 namespace fit_key {
+inline constexpr Range cell_temperatures_K{coldest_cell_K, hottest_cell_K};
 inline constexpr TextsKey curves(
     "curves",
     "files of voltage and current, as `voltage_V,current_A`, `V,I`, `Voltage (V);Current (mA)`; "
     "several are repeats under the same light, or have separate lights; *or*",
     {.optional = true});
 inline constexpr TablesKey curve("curve", "curves whose light or temperature is stated; *or*");
-inline constexpr TextKey curve_file("file", "one of the files in `curves`");
+inline constexpr TextKey curve_file("file", "file of the curve; it may also be in `curves`");
 inline constexpr NumberKey curve_irradiance("irradiance_W_m2", Range::positive(),
                                             "irradiance of the curve",
                                             {.usually = "that in the file, if any"});
-inline constexpr NumberKey curve_temperature("temperature_K", {1.0, 1000.0},
+inline constexpr NumberKey curve_temperature("temperature_K", cell_temperatures_K,
                                              "temperature of the cells",
                                              {.usually = "that in the file, else that of `[fit]`"});
 inline constexpr ChoiceKey shunt(
@@ -33,7 +35,7 @@ inline constexpr TextKey module_name(
 inline constexpr IntegerKey cells_in_series("cells_in_series", 1, 1, 2000,
                                             "number of cells in series in the device");
 inline constexpr NumberKey temperature(
-    "temperature_K", 298.15, {1.0, 1000.0},
+    "temperature_K", 298.15, cell_temperatures_K,
     "cell temperature of the curves; a datasheet gives it for each point");
 inline constexpr NumberKey rounding_current("rounding_A", Range::not_negative(),
                                             "step of a datasheet's currents",

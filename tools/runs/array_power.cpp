@@ -1,6 +1,7 @@
 #include "tools/runs/array_power.h"
 
 #include <algorithm>
+#include <set>
 
 #include "attitude/environment/environment.h"
 #include "core/constants.h"
@@ -64,6 +65,11 @@ void read_responsivity(OpticalRun& run, ArrayPower& array) {
     run.warn(std::move(line));
   }
   array.ideal_responsivity_A_W = over_bands({{1e-8, 1e-4}, {1.0, 1.0}});
+  std::set<std::string> spectra_in_words;
+  for (const WeighedSpectrum& one : spectra) spectra_in_words.insert(in_words(one.spectrum));
+  for (const std::string& words : spectra_in_words) {
+    array.spectra += (array.spectra.empty() ? "" : ", ") + words;
+  }
 }
 
 // Air from [environment]; none around a platform in orbit.
@@ -113,6 +119,7 @@ ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known) {
   if (known) {
     array.responsivity_A_W = known->responsivity_A_W;
     array.ideal_responsivity_A_W = known->ideal_responsivity_A_W;
+    array.spectra = known->spectra;
   } else {
     read_responsivity(run, array);
   }
@@ -199,12 +206,31 @@ Product array_power_product(const ArrayDesign& design, const ArrayResult& array,
   return product;
 }
 
-void print_array(const Console& console, const ArrayDesign& design, const ArrayResult& array,
+std::optional<std::string> above_absorbed(const ArrayPower& array, const OpticalRun& run,
+                                          const TraceResult& result, const ArrayResult& power) {
+  double incident_W = 0.0, absorbed_W = 0.0;
+  for (const std::optional<size_t> index : {std::optional(array.flux_map), array.back_map}) {
+    if (!index) continue;
+    const FluxMap map = run.flux_map(*index).flux_map(result.sums[*index]);
+    incident_W += map.incident.power_W.value;
+    absorbed_W += map.absorbed.power_W.value;
+  }
+  if (!(power.efficiency.value * incident_W > absorbed_W)) return {};
+  return "the array delivers " + show_percent(power.efficiency.value) +
+         " of the light on its cells, but their material absorbs only " +
+         show_percent(absorbed_W / incident_W) +
+         ": the quantum efficiency counts all light on the cells; state the cells' own absorptance "
+         "in [[material]]";
+}
+
+void print_array(const Console& console, const ArrayPower& read, const ArrayResult& array,
                  const TraceResult& result) {
+  const ArrayDesign& design = read.design;
   const double emitted = result.power_balance.emitted_W;
   console.heading("Solar array (maximum power point)");
   console.line("  light on the cells      " + show(array.power_on_cells_W, "W") + "  (" +
                show_percent(array.power_on_cells_W.value / emitted) + " of emitted)");
+  console.line("  spectrum                " + read.spectra);
   console.line("  electric power          " + show(array.power_W, "W") + "  (" +
                show_percent(array.efficiency.value) + " of the light on the cells)");
   console.line("  voltage, current        " + show(array.voltage_V, "V") + ", " +
@@ -212,9 +238,8 @@ void print_array(const Console& console, const ArrayDesign& design, const ArrayR
   console.line("  cell temperature        " + show_temperature(array.temperature_K.value) + ", " +
                origin_of_temperature(design));
   if (array.power_W.value > 0.0) {
-    console.details().line("  power over temperature  " + show_brief(array.power_per_K_W) +
-                           " W/K  (" + show_percent(array.power_per_K_W / array.power_W.value) +
-                           "/K)");
+    console.line("  power over temperature  " + show_brief(array.power_per_K_W) + " W/K  (" +
+                 show_percent(array.power_per_K_W / array.power_W.value) + "/K)");
   }
   console.line("  sum of cell maxima      " + show(array.sum_of_cells_W, "W") + "  (" +
                show_percent(array.mismatch_loss.value) + " lost to uneven light and diodes)");

@@ -22,6 +22,7 @@ struct ArrayPower {
   std::vector<double> responsivity_A_W;        // per band of the scene
   std::vector<double> ideal_responsivity_A_W;  // with every photon converted
   std::vector<std::string> notices;            // one line each
+  std::string spectra;                         // of the lamps, in words
   ArrayReport report;
 };
 
@@ -32,7 +33,7 @@ struct ArrayPower {
 // evaluated again.
 ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known = nullptr);
 
-// Light on the cells in a traced run; light on the back is weighted by the bifaciality.
+// Light on the cells in a traced run; of that on the back the bifaciality enters.
 ArrayLight light_on(const ArrayPower& array, const OpticalRun& run, std::span<const BinSums> sums);
 
 // Computes the array, in the steady state unless the temperature of the cells is stated. Throws
@@ -56,7 +57,11 @@ std::optional<std::string> above_rated(const ArrayDesign& design, double kelvin)
 Product array_power_product(const ArrayDesign& design, const ArrayResult& array,
                             const TraceResult& result);
 
-void print_array(const Console& console, const ArrayDesign& design, const ArrayResult& array,
+// Warning if the array delivers more than its surface absorbs of the light on the cells.
+std::optional<std::string> above_absorbed(const ArrayPower& array, const OpticalRun& run,
+                                          const TraceResult& result, const ArrayResult& power);
+
+void print_array(const Console& console, const ArrayPower& read, const ArrayResult& array,
                  const TraceResult& result);
 
 }  // namespace photorque

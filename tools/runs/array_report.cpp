@@ -180,6 +180,7 @@ LossInputs loss_inputs(const ArrayPower& array, const OpticalRun& run, const Tra
     in.photon_V = in.on_receiver_W / ideal_A;
     in.quantum_efficiency = current_A / ideal_A;
   }
+  in.is_bifacial = array.back_map.has_value();
   in.wall_plug_efficiency = array.report.chain.wall_plug;
   in.collimator_efficiency = array.report.chain.collimator;
   in.converter_efficiency = array.report.chain.converter;

@@ -62,6 +62,10 @@ void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
     note(cleaning.clipped, "points from " + show(cleaning.clipped_from_V) +
                                " V on, beyond open circuit, where the meter stays at " +
                                show(cleaning.clipped_A) + " A");
+    const RangeLimit limit = take_range_limit(curve.sweep);
+    note(limit.readings, "readings of " + show(limit.current_A) +
+                             " A, which is the end of the meter's range: the curve leaves this "
+                             "plateau abruptly");
     if (curve.sweep.light.empty() && task.substrings == 0) {
       const UnsteadyLight unsteady = take_unsteady_light(curve.sweep, task.noise.current_fraction);
       note(unsteady.readings, "points between " + show(unsteady.from_V) + " and " +
@@ -94,14 +98,22 @@ bool are_repeats(const std::vector<CurveAt>& curves) {
 }
 
 void read_curves(const Settings& s, const fs::path& folder, FitTask& task) {
+  const std::vector<Settings> stated_curves =
+      s.has(fit_key::curve) ? s.get(fit_key::curve) : std::vector<Settings>{};
   if (s.has(fit_key::curves)) {
     for (const std::string& name : s.get(fit_key::curves)) {
-      task.files.push_back(existing_file(s, fit_key::curves, folder, name));
-      add_curves(task.files.back(), {}, {}, task);
+      const fs::path file = existing_file(s, fit_key::curves, folder, name);
+      if (std::ranges::any_of(stated_curves, [&](const Settings& one) {
+            return fs::equivalent(file, existing_file(one, fit_key::curve_file, folder));
+          })) {
+        continue;
+      }
+      task.files.push_back(file);
+      add_curves(file, {}, {}, task);
     }
   }
-  if (s.has(fit_key::curve)) {
-    for (const Settings& one : s.get(fit_key::curve)) {
+  if (!stated_curves.empty()) {
+    for (const Settings& one : stated_curves) {
       const auto stated = [&](const NumberKey& key) -> std::optional<double> {
         if (!one.has(key)) return std::nullopt;
         return one.get(key);
@@ -178,6 +190,7 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
     for (const Settings& point : s.get(fit_key::datasheet))
       task.datasheet.push_back(read_rated_point(point));
     task.slopes = read_rated_slopes(s);
+    task.assumed_slopes = assumed_slopes(s);
     const RatedTolerance written = written_steps(task.datasheet);
     task.tolerance = {s.get_or(fit_key::rounding_current, written.step_A),
                       s.get_or(fit_key::rounding_voltage, written.step_V),
@@ -228,9 +241,11 @@ void check_ideality(const SingleDiode& d, double scatter, const FitTask& task) {
   // With fewer cells the ideality of one is larger, but so is its voltage.
   constexpr double junction_V = 0.3;
   if (ideality < lowest && open_circuit_V(task) > junction_V * task.cells_in_series) {
+    std::string without;
+    for (const std::string& note : task.notes) without += "; " + note;
     throw InputError({}, task.datasheet.empty() ? "fit.curves" : "fit.datasheet",
                      "an ideality of " + show(ideality) + " for each of " +
-                         std::to_string(task.cells_in_series) + " cells",
+                         std::to_string(task.cells_in_series) + " cells" + without,
                      "the curve of one diode (an ideality of 1 to 2): this one falls faster near "
                      "open circuit, or the number of cells in series is smaller");
   }
@@ -286,11 +301,14 @@ void print_left_out(const Console& console, const FitTask& task,
                (outliers.size() > shown ? ", …" : ""));
 }
 
-void print_light_note(const Console& console, bool uses_light, bool is_one) {
-  if (!uses_light) return;
-  console.line(
-      std::string("  note: the irradiance of each reading is used; the photocurrent is at ") +
-      (is_one ? "its mean" : "the mean of each curve"));
+// States whether the irradiance of single readings is used, if any curve has it.
+void print_light_note(const Console& console, const FitTask& task, bool uses_light) {
+  if (std::ranges::all_of(task.sweeps, [](const IvSweep& s) { return s.light.empty(); })) return;
+  console.line(uses_light ? std::string("  note: the irradiance of each reading is used; the "
+                                        "photocurrent is at ") +
+                                (task.sweeps.size() == 1 ? "its mean" : "the mean of each curve")
+                          : "  note: the irradiance of each reading is not used: it doubles the "
+                            "scatter");
 }
 
 // Prints the hysteresis: the difference between rising and falling voltage.
@@ -321,7 +339,7 @@ Product fit_even_light(const FitTask& task, const Console& console) {
                " points; scatter " + readable_number(std::sqrt(fit.variance), 3) +
                " times that of the stated noise");
   print_misfit(console, std::sqrt(fit.variance));
-  print_light_note(console, fit.uses_light, task.sweeps.size() == 1);
+  print_light_note(console, task, fit.uses_light);
   if (fit.storage) print_storage(console, *fit.storage, rows);
   console.line("  maximum " + show(best.power_W()) + " W at " + show(best.voltage_V) + " V");
   print_cell(console, fit.diode, task);
@@ -398,8 +416,8 @@ Product fit_several_conditions(const FitTask& given, const Console& console) {
                  " of its photocurrent (a shadow on a part, or a cloud); "
                  "fit it with substrings = N");
   }
-  print_light_note(console, std::ranges::any_of(fit.curves, &ConditionsFit::Curve::uses_light),
-                   false);
+  print_light_note(console, task,
+                   std::ranges::any_of(fit.curves, &ConditionsFit::Curve::uses_light));
   console.line("  rms of current " + show_percent(fit.rms) + " of the photocurrent over " +
                std::to_string(fit.points) + " points of " + std::to_string(fit.curves.size()) +
                " curves; scatter " + readable_number(std::sqrt(fit.variance), 3) +
@@ -411,6 +429,27 @@ Product fit_several_conditions(const FitTask& given, const Console& console) {
   if (has_gap) print_key(console, "gap_eV", fit.model.gap_eV);
   if (has_gap) print_key(console, "gap_slope_per_K", fit.model.gap_slope_1_K);
   return product;
+}
+
+// Warns about the point whose stated maximum power the fitted cell misses most.
+void print_power_misfit(const Console& console, const RatedFit& fit,
+                        std::span<const RatedPoint> points) {
+  constexpr double noticeable = 0.005;
+  double worst = 0.0;
+  std::string words;
+  for (const RatedPoint& p : points) {
+    const RatedPoint gives = fit.predict(p.irradiance_W_m2, p.temperature_K);
+    const double stated_W = p.maximum_A * p.maximum_V, given_W = gives.maximum_A * gives.maximum_V;
+    const double off = given_W / stated_W - 1.0;
+    if (std::abs(off) < std::max(noticeable, worst)) continue;
+    worst = std::abs(off);
+    words = show(given_W) + " W for the stated " + show(stated_W) + " W (" + show_percent(off) +
+            ") at " + show(p.irradiance_W_m2) + " W/m²";
+  }
+  if (words.empty()) return;
+  console.line("  warning: these keys give " + words +
+               ". Check cells_in_series (half-cells in two parallel chains count once), and V_oc, "
+               "I_sc and the maximum for errors");
 }
 
 Product fit_datasheet(const FitTask& task, const Console& console) {
@@ -430,7 +469,10 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
                      "a fraction of the open-circuit voltage per kelvin, about -0.003");
   }
   std::vector<CellRow> rows = diode_rows(fit.diode, at_first);
-  rows.push_back({"gap_eV", {fit.model.gap_eV, fit.gap_error_eV}});
+  const bool is_assumed = !task.assumed_slopes.empty();
+  rows.push_back({"gap_eV",
+                  {fit.model.gap_eV, is_assumed ? 0.0 : fit.gap_error_eV},
+                  is_assumed ? CellRow::Is::assumed : CellRow::Is::value});
   rows.push_back({"rms_fraction", {fit.rms, 0.0}});
   print_rows(console, rows);
   print_bounds(console, fit.bounds);
@@ -439,8 +481,13 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
       "  errors: of figures rounded to " + show(t.step_A) + " A and " + show(t.step_V) + " V" +
       (t.fraction > 0.0 ? ", each good to " + show_percent(t.fraction) + " (one sigma)" : "") +
       (task.datasheet.size() == 1 ? "; one point leaves the ideality as assumed" : ""));
+  if (is_assumed) {
+    console.line("  note: assumed, since not stated: " + task.assumed_slopes +
+                 "; gap and temperature slopes follow from it");
+  }
   print_shunt_law(console, fit.shunt_law,
                   fit.other_rms > 0.0 ? "; the other law leaves " + show(fit.other_rms) : "");
+  print_power_misfit(console, fit, task.datasheet);
   if (fit.rms_over_known > usual_scatter && task.datasheet.size() > 1) {
     console.line("  warning: the figures are off by " + show(fit.rms) + " (rms), " +
                  show(fit.rms_over_known) +
@@ -510,7 +557,7 @@ Product list_module(const ListedModule& module, const Console& console) {
                (module.strings > 1 ? ", " + std::to_string(module.strings) + " in parallel" : ""));
   console.line("  maximum power " + show(given_W) + " W, listed " + show(listed_W) + " W, at " +
                show(rated.irradiance_W_m2) + " W/m² and " + show(rated.temperature_K) + " K");
-  if (!module.note.empty()) console.line("  note: " + module.note);
+  for (const std::string& note : module.notes) console.line("  note: " + note);
   constexpr double usual = 0.01;
   if (std::abs(given_W - listed_W) > usual * listed_W) {
     console.line("  warning: the circuit and the listed maximum power differ by " +
@@ -536,7 +583,11 @@ Product list_module(const ListedModule& module, const Console& console) {
     const double peak = efficiency_peak_of(module);
     console.heading("For [array]: this photocurrent in AM1.5G sunlight");
     print_key(console, "quantum_efficiency_peak", peak);
-    if (peak > 1.0) console.line("  warning: above 1: the listed area is too small");
+    if (peak > 1.0) {
+      console.line(
+          "  warning: above 1: this photocurrent needs another quantum efficiency than that shape "
+          "([array.quantum_efficiency]), or the listed area is too small");
+    }
     rows.push_back({"quantum_efficiency_peak", {peak}});
   }
   rows.push_back({"photocurrent_A", {module.photocurrent_A}});

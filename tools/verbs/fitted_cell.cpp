@@ -22,6 +22,7 @@ std::string words_of(const CellRow& row) {
   const std::string value = show(row.estimate.value);
   if (row.is == Is::lower_limit) return "above " + value + " (95 %): no leakage is detected";
   if (row.is == Is::upper_limit) return "below " + value + " (95 %)";
+  if (row.is == Is::assumed) return value + ", from an assumed slope";
   // An error of ten times the number means that it is not determined.
   constexpr double hopeless = 10.0;
   if (!(row.estimate.standard_error < hopeless * std::abs(row.estimate.value)) &&
@@ -34,6 +35,7 @@ std::string words_of(const CellRow& row) {
 const char* kind_of(const CellRow& row) {
   if (row.is == Is::lower_limit) return "lower limit";
   if (row.is == Is::upper_limit) return "upper limit";
+  if (row.is == Is::assumed) return "assumed";
   return std::isfinite(row.estimate.standard_error) ? "value" : "not determined";
 }
 
@@ -78,7 +80,8 @@ void print_rows(const Console& console, const std::vector<CellRow>& rows) {
   for (const CellRow& row : rows) {
     // A limit is printed with the name of its parameter.
     std::string name = row.name;
-    if (row.is != Is::value) name = name.substr(0, name.find('_')) + "_ohm";
+    const bool is_limit = row.is == Is::lower_limit || row.is == Is::upper_limit;
+    if (is_limit) name = name.substr(0, name.find('_')) + "_ohm";
     console.line("  " + padded(name, 26) + words_of(row));
   }
 }
@@ -109,11 +112,12 @@ void print_cell(const Console& console, const SingleDiode& d, const FitTask& tas
   print_key(console, "saturation_1_A", d.saturation_A.value);
   print_key(console, "ideality_1", d.scale_V.value / task.thermal_V());
   const auto print_ohm = [&](const char* name, const std::optional<double>& limit, double value,
-                             const char* comment) {
-    print_key(console, name, limit.value_or(value) / cells, limit ? comment : "");
+                             const std::string& bound) {
+    print_key(console, name, value / cells,
+              limit ? "not determined: " + (bound + show(*limit / cells)) + " (95 %)" : "");
   };
-  print_ohm("series_ohm", d.series_below_ohm, d.series_ohm.value, "an upper limit (95 %)");
-  print_ohm("shunt_ohm", d.shunt_above_ohm, d.shunt_ohm.value, "a lower limit (95 %)");
+  print_ohm("series_ohm", d.series_below_ohm, d.series_ohm.value, "below ");
+  print_ohm("shunt_ohm", d.shunt_above_ohm, d.shunt_ohm.value, "above ");
   if (reference.shunt_light_A > 0.0) {
     print_key(console, "shunt_photocurrent_A", reference.shunt_light_A);
     if (std::isfinite(reference.shunt_dark_ohm)) {

@@ -27,6 +27,7 @@ struct FitTask {
   std::vector<RatedPoint> datasheet;
   std::optional<ListedModule> module;
   TemperatureSlopes slopes;
+  std::string assumed_slopes;  // the keys of those that are not stated, with their values
   RatedTolerance tolerance;
   SweepNoise noise;
   int cells_in_series = 1;
@@ -39,9 +40,10 @@ struct FitTask {
 };
 
 // A figure of a fit. If the data do not determine a number, it is replaced by a limit (95 %,
-// one-sided), whose name states this: "shunt_above_ohm".
+// one-sided), whose name states this: "shunt_above_ohm". A figure that follows from an assumption
+// has no error.
 struct CellRow {
-  enum class Is { value, lower_limit, upper_limit };
+  enum class Is { value, lower_limit, upper_limit, assumed };
   std::string name;
   Estimate estimate;
   Is is = Is::value;
@@ -59,7 +61,8 @@ void print_undetermined(const Console& console, const std::vector<CellRow>& rows
 void print_bounds(const Console& console, const std::vector<BoundReached>& bounds);
 void print_key(const Console& console, const char* name, double value,
                const std::string& comment = "");
-// Prints the keys of an experiment's [array.cell_parameters] for one of the cells. `reference`
+// Prints the keys of an experiment's [array.cell_parameters] for one of the cells: those of the
+// fit, also where the data determine only a limit. `reference`
 // states the change of the shunt with the light.
 void print_cell(const Console& console, const SingleDiode& diode, const FitTask& task,
                 const CellParameters& reference = {});

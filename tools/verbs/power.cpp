@@ -24,8 +24,9 @@ PowerRun run_power(const RunOptions& options, const Console& console) {
   if (auto warning = above_rated(array.design, power.temperature_K.value)) {
     run->warn(std::move(*warning));
   }
+  if (auto warning = above_absorbed(array, *run, light, power)) run->warn(std::move(*warning));
   print_trace(console, *run, light);
-  print_array(console, array.design, power, light);
+  print_array(console, array, power, light);
   Product product = run->product(light);
   append(product, array_power_product(array.design, power, light));
   append(product, report_array(console, *run, array, light, power));

@@ -28,12 +28,14 @@ std::string in_column(const std::string& text) {
 class PowerTable {
  public:
   void add(double tilt_rad, double heading_rad, const Estimate& light,
-           const std::optional<Estimate>& electric) {
+           const std::optional<ArrayResult>& array) {
     Table::Row row = table_.row();
     row.set("tilt_deg", stated_deg(tilt_rad)).set("heading_deg", stated_deg(heading_rad));
     row.set("on_receiver_W", light.value).set("on_receiver_error_W", light.standard_error);
-    if (!electric) return;
-    row.set("electric_W", electric->value).set("electric_error_W", electric->standard_error);
+    if (!array) return;
+    row.set("electric_W", array->power_W.value)
+        .set("electric_error_W", array->power_W.standard_error)
+        .set("cell_temperature_K", array->temperature_K.value);
   }
   const Table& table() const { return table_; }
 
@@ -123,8 +125,8 @@ TorqueMapRun over_attitudes(const Console& console, const std::shared_ptr<Optica
       const OpticalResult result =
           run.run(lab_from_body, {}, run.experiment().file.torque_map_rays);
       set_node(wrenches, node, run.wrench().total(result.sums[run.wrench_index()]));
-      std::optional<Estimate> electric;
-      if (array) electric = evaluate(*array, run, result).power_W;
+      std::optional<ArrayResult> electric;
+      if (array) electric = evaluate(*array, run, result);
       if (flux_map) {
         powers.add(grid.tilt_rad[t], grid.heading_rad[h],
                    run.flux_map(*flux_map).flux_map(result.sums[*flux_map]).incident.power_W,
@@ -133,7 +135,10 @@ TorqueMapRun over_attitudes(const Console& console, const std::shared_ptr<Optica
       warnings.add(run.warnings(result), "tilt " + show(stated_deg(grid.tilt_rad[t])) +
                                              " deg, heading " +
                                              show(stated_deg(grid.heading_rad[h])) + " deg");
-      if (watch) watch({run, wrenches.nodes(), lab_from_body, result, electric});
+      if (watch) {
+        watch({run, wrenches.nodes(), lab_from_body, result,
+               electric ? std::optional(electric->power_W) : std::nullopt});
+      }
       rays += result.rays;
       wall_s += result.wall_s;
       if (progress) progress(static_cast<double>(node + 1) / static_cast<double>(wrenches.nodes()));
@@ -153,6 +158,12 @@ TorqueMapRun over_attitudes(const Console& console, const std::shared_ptr<Optica
                                         "electric_power_over_tilt", "Electric power of the array"));
   }
   print_torques(wrenches, grid, console);
+  if (array) {
+    const auto [coldest_K, warmest_K] =
+        std::ranges::minmax(powers.table().column("cell_temperature_K").values);
+    console.line("  electric_W of the table: cells of " + show_temperature(coldest_K) + " to " +
+                 show_temperature(warmest_K) + ", " + origin_of_temperature(array->design));
+  }
   warnings.print(console);
   return {shared,
           std::move(wrenches),
