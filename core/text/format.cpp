@@ -102,7 +102,7 @@ std::string shell_word(const std::string& word) {
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
   if (std::ranges::any_of(word, is_control)) {
-    // ANSI-C quoting of bash, ksh and zsh, and of POSIX since 2024: the word stays on one line.
+    // ANSI-C quoting of bash and zsh, and of POSIX since 2024: the word stays on one line.
     std::string text = "$'";
     for (const char c : word) {
       if (is_control(static_cast<unsigned char>(c))) {
