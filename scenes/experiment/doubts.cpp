@@ -62,16 +62,23 @@ void find_lamps_inside(const Scene& scene, std::span<const Beam> beams,
   }
 }
 
-// Whether a part encloses all others, of which there are some. A point of each is tested.
+// Whether a part encloses all others, of which there are some. A point of each is tested, a little
+// in front of its first triangle and behind it, since a sheet may lie on a face of the part.
 bool is_chamber(const Scene& scene, uint32_t part) {
+  constexpr double little = 1e-4;  // of the triangle's size
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& other = scene.instances[i];
     const Mesh& mesh = scene.meshes[other.mesh];
     if (i == part || mesh.triangles.empty()) continue;
-    const auto& [a, b, c] = mesh.triangles.front();
-    const Vec3 centre_m = (mesh.vertices_m[a] + mesh.vertices_m[b] + mesh.vertices_m[c]) / 3.0;
-    if (winding(scene, scene.instances[part], other.body_from_mesh * centre_m) < inside) {
-      return false;
+    std::array<Vec3, 3> p;
+    for (size_t k = 0; k < 3; ++k) {
+      p[k] = other.body_from_mesh * mesh.vertices_m[mesh.triangles.front()[k]];
+    }
+    const Vec3 centre_m = (p[0] + p[1] + p[2]) / 3.0;
+    const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+    for (const double side : {-1.0, 1.0}) {
+      const Vec3 at_m = centre_m + side * little * (p[1] - p[0]).norm() * normal;
+      if (winding(scene, scene.instances[part], at_m) < inside) return false;
     }
   }
   return scene.instances.size() > 1;
