@@ -111,8 +111,9 @@ class Search {
 
   // Prints the constraints that the experiment as written breaks: the search starts there.
   void print_broken_at_start() const {
+    if (!result_.nominal) return;
     for (const Constraint& constraint : plan_.constraints) {
-      const auto figure = figure_of(result_.nominal, constraint.figure.column());
+      const auto figure = figure_of(*result_.nominal, constraint.figure.column());
       if (!figure || relative_margin(constraint, figure->value) >= 0.0) continue;
       const bool is_low = figure->value < constraint.at_least;
       console_.line("  note: the experiment as written, where the search starts, has " +
