@@ -177,8 +177,7 @@ bool is_right(double found, double as_is) {
 }
 
 std::string read_so(const std::string& convention, const std::string& reason) {
-  return "convention: " + convention + ": the recording was read so, because only then do " +
-         reason;
+  return "convention: " + convention + ": this convention was used, because only with it " + reason;
 }
 
 void read_gyro_as(const Mat3& matrix, Observation& seen) {
@@ -256,7 +255,7 @@ std::string turn_wheels(const std::array<bool, 3>& reversed, std::span<Observati
   }
   if (names.empty()) return "";
   return "the sign of " + names +
-         " was turned: as it stands the wheel would have a negative moment of inertia";
+         " was reversed; otherwise the wheel would have a negative moment of inertia";
 }
 
 // An interpretation of the gyro, and the inertia estimated from the rates with it.

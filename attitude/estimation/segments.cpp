@@ -148,7 +148,7 @@ std::pair<size_t, size_t> rows_of_one_law(const Observation& rows, const Vec3& a
   const bool is_driven = is_commanded(rows.schedule);
   if (!is_driven) {
     start_at(start_of_motion(rows, axis, first, last),
-             "it rests and then sets off at once: a drive or a hand begins to act");
+             "the body is at rest and then starts suddenly (a drive or a hand)");
   }
   if (rows.has_gyro) {
     ConsistentSegment lawful = consistent_segment(rows, axis, first, last);
@@ -158,8 +158,8 @@ std::pair<size_t, size_t> rows_of_one_law(const Observation& rows, const Vec3& a
   }
   if (rows.has_some_attitude() && !is_driven) {
     start_at(released_at(rows, axis, first, last),
-             "the angle does not follow the law of the rest: a hand holds it, or something else "
-             "acts");
+             "the angle does not follow the law of the remaining recording (for example, a hand "
+             "holds it)");
   }
   return {first, last};
 }
@@ -399,10 +399,10 @@ ConsistentSegment consistent_segment(const Observation& rows, const Vec3& axis, 
     if (end - begin > longest.last - longest.first) {
       longest = {begin, end, ""};
       const Break& edge = since != nullptr ? *since : *until;
-      longest.left_out = "the rate changes its slope at once at " +
+      longest.left_out = "the angular acceleration changes suddenly at " +
                          readable_number(read.time_s[edge.at], 4) + " s, from " +
                          readable_number(edge.before_rad_s2, 3) + " to " +
-                         readable_number(edge.after_rad_s2, 3) + " rad/s²: something else acts ";
+                         readable_number(edge.after_rad_s2, 3) + " rad/s²: another torque acts ";
       longest.left_out += since != nullptr && until != nullptr ? "before and after"
                           : since != nullptr                   ? "before"
                                                                : "after";

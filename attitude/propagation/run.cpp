@@ -422,21 +422,23 @@ PlatformState read_initial_state(const Settings& settings, const AttitudeModel& 
   return initial;
 }
 
-// InputError for a law of wheels without a speed.
+// InputError for a law of a wheel that neither its key nor a file gives a speed. Without one, it
+// would exert no torque.
 void require_wheel_speeds(const Settings& settings, const AttitudeModel& model) {
+  constexpr const char* speed = "speed_rad_s";
   const bool has_speeds = std::ranges::any_of(
       model.schedule.held, [](const ZeroOrderHold& held) { return held.wheel != WheelSpeeds{}; });
   if (has_speeds) return;
   for (const Disturbance& d : model.disturbances) {
     const DisturbanceKind* kind = find_kind(d.kind);
-    const bool states_speed =
-        std::ranges::find(d.parameters, "speed_rad_s", &Parameter::key) != d.parameters.end();
-    if (kind == nullptr || kind->screening.needs != Requirement::wheel || states_speed) continue;
-    const bool has_key =
-        std::ranges::find(kind->keys, "speed_rad_s", &Key::name) != kind->keys.end();
+    if (kind == nullptr || kind->screening.needs != Requirement::wheel ||
+        std::ranges::find(kind->keys, speed, &Key::name) == kind->keys.end() ||
+        std::ranges::find(d.parameters, speed, &Parameter::key) != d.parameters.end()) {
+      continue;
+    }
     throw settings.error(propagate_key::commands, "no speed of the wheel of " + d.kind,
-                         std::string(has_key ? "its key speed_rad_s, or " : "") +
-                             "a file with wheel_x_rad_s, wheel_y_rad_s or wheel_z_rad_s");
+                         std::string("its key ") + speed +
+                             ", or a file with wheel_x_rad_s, wheel_y_rad_s or wheel_z_rad_s");
   }
 }
 

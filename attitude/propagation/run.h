@@ -59,7 +59,7 @@ struct PropagationResult {
   Recording recording;  // readings of the sensors
   // Time history (table), tilt, heading, rates, charge and torques (plots), headline figures.
   Product product;
-  PlatformState end;  // of the last row, or at the event that ended the run
+  PlatformState end;                  // of the last row, or at the event that ended the run
   std::vector<PlatformState> states;  // the truth at the recording's times
   std::vector<Event> events;
   Propagator::Statistics statistics;

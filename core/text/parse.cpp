@@ -222,7 +222,7 @@ NumberColumns read_number_columns(const std::filesystem::path& path,
   std::vector<std::string_view> cells;
   for (std::string_view line; lines.next(line);) {
     split_cells(line, separator, cells);
-    // For example decimal commas, which would shift the following cells.
+    // The cause may be decimal commas, which shift the following cells.
     if (cells.size() > result.header.size()) {
       throw InputError(lines.where(), "", "a row of " + std::to_string(cells.size()) + " cells",
                        std::to_string(result.header.size()) +

@@ -88,7 +88,7 @@ constexpr const char* direction_of(TorqueAxes axes) {
     case TorqueAxes::vertical:
       return "about the vertical";
     case TorqueAxes::lean:
-      return "about the axis of the lean, positive rights";
+      return "about the tilt axis; positive: reduces the tilt";
     case TorqueAxes::rate:
       return "against the rate";
     case TorqueAxes::rate_by_axis:
@@ -225,7 +225,7 @@ std::string similar_effects(const EmpiricalShape& shape, const Numbers& numbers)
     return f.of == MotionVariable::yaw
                ? "a bearing whose gap varies along the circumference, or that rubs over part of a "
                  "turn"
-               : "a film of air that gets thinner on one side as the platform leans";
+               : "an air film that becomes thinner on one side when the platform is tilted";
   }
   switch (f.of) {
     case MotionVariable::yaw:

@@ -410,8 +410,9 @@ std::string mostly_explained(const Diagnosis& d) {
                  after = d.holdout->chi2_per_sample_after;
     text += after < before
                 ? printed(
-                      ". Held out, it leaves %.3g of the nominal model's residual (rms), %.3g "
-                      "times the noise: the rest has no known cause",
+                      ". In the held-out data, the residual (rms) is %.3g of that of the nominal "
+                      "model and %.3g "
+                      "times the noise; the cause of the remainder is unknown",
                       std::sqrt(after / before), std::sqrt(after))
                 : std::string(
                       ". The held-out data do not show it: the nominal model predicts them "

@@ -129,8 +129,8 @@ std::string sentence_of(const std::vector<BodyOfRecordings>& bodies) {
   const Vec3 a = principal_moments(bodies[0].inertia_relative),
              b = principal_moments(bodies[1].inertia_relative);
   const bool is_turned = bodies.size() == 2 && (a - b).cwiseAbs().maxCoeff() < least_difference;
-  return text + (is_turned ? "their principal moments agree, so the sensor may have been mounted "
-                             "otherwise: diagnose them apart"
+  return text + (is_turned ? "their principal moments agree: the mounting of the sensor may have "
+                             "changed; diagnose the recordings separately"
                            : "diagnose them apart");
 }
 

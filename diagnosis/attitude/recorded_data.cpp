@@ -312,8 +312,8 @@ InstrumentFinding level_finding(int k, const FoundNoise& found, double stated) {
   const double value = found.noise.level / unit;
   return {
       channel_traits(k).name, "noise_level", value, found.level_sigma * value,
-      printed("the noise of %s is not what the experiment states: %.3g %s were found in the "
-              "recording and used, %.3g are stated",
+      printed("the noise of %s differs from the stated one: %.3g %s were estimated from the "
+              "recording and used; %.3g is stated",
               channel_traits(k).name_in_text, value, k < 3 ? "arcsec" : "rad/s", stated / unit)};
 }
 
@@ -458,7 +458,7 @@ void report_bias_drift(const BiasHistory& history, std::vector<InstrumentFinding
     findings.push_back(
         {channel_traits(3 + axis).name, "bias_drift_rad_s", off, sigma,
          printed("the bias of the gyro about body %c drifts: in %s it is (%.3g ± %.1g) rad/s off "
-                 "its mean at %.0f s; the drift is taken out",
+                 "its mean at %.0f s; the drift is removed",
                  'x' + axis, name.c_str(), off, sigma, history.time_s[at])});
   }
 }

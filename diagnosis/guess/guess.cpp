@@ -127,7 +127,7 @@ std::string cells_in_words(const Cells& cells, double open_V) {
                         : "";
   return count + (cells.count > 1 ? " cells" : " cell") + modules + " of silicon would give " +
          readable_number(open_V, 3) + " V at " + readable_number(one_V, 3) +
-         " V each; the label says how many there are.";
+         " V each; the label of the module states the number.";
 }
 
 }  // namespace
@@ -177,7 +177,8 @@ void guess_module(TomlDocument& document, const std::vector<fs::path>& recording
                 " % of the short-circuit current): it is the reference of the nominal module."
           : "CONFIRM: there is no curve of the module before the fault. This curve is the "
             "reference, so that only deviations from the single-diode model can be found. A curve "
-            "from before, or [[module.datasheet]] (docs/light_diagnosis.md), says more.");
+            "from before, or [[module.datasheet]] (docs/light_diagnosis.md), improves the "
+            "diagnosis.");
   document.set(module, "reference_curve", {reference.generic_string()});
   document.comment(clearest.temperature_K
                        ? "CONFIRM: the file states the temperature; its standard error."

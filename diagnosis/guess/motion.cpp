@@ -155,9 +155,10 @@ void add_inertia(TomlDocument& document, SettingsNode::Table& table,
       sigma(row[k], column[k]) = sigma(column[k], row[k]) = uncertain(3 + k, scale);
     }
     why =
-        "CONFIRM: the ratios of the moments as the rates change without a torque; that explains " +
+        "CONFIRM: ratios of the moments for which the rates agree with torque-free motion; they "
+        "explain " +
         digits(100.0 * (1.0 - found->left * found->left), 4) +
-        " % of what they do. The sigmas allow for torques that are not known yet.";
+        " % of the changes of the rates. The sigmas allow for unknown torques.";
   }
   document.comment(
       "Motion without a known torque determines ratios of moments only: Ixx is 1. State a measured "
@@ -201,7 +202,7 @@ void add_gyro_bias(TomlDocument& document, const Machine& m) {
         sigma = rest->sigma_rad_s * m.platform.axis.cwiseAbs();
     SettingsNode::Table& sensors = document.table("sensors");
     document.set(sensors, "gyro.bias_rad_s.value", vector_node(value),
-                 "CONFIRM: what the gyro reads at rest, at the end");
+                 "CONFIRM: gyro reading at rest, at the end of the recording");
     document.set(sensors, "gyro.bias_rad_s.sigma", vector_node(sigma));
     return;
   }
@@ -215,7 +216,7 @@ std::string restoring_law_text(RestoringLaw law, const std::string& seen) {
                    "pendulum, a spring (\"x\" for a weight about a level axis)."
              : seen +
                    ": a pendulum about a horizontal axis (\"z\" where the axis is vertical and "
-                   "something else drives it back). Angle zero is taken to hang.";
+                   "another torque restores it). At angle zero, the pendulum hangs vertically.";
 }
 
 RestoringLaw law_of_swing(const std::vector<Observation>& runs, const Vec3& axis) {
@@ -248,8 +249,8 @@ bool infer_restoring_from_rates(Machine& m, int k, const std::string& seen = "on
       m.runs, [&](const Observation& run) { return !angles_of_swing(run, axis).row.empty(); });
   if (!swings && !turns_over_weight(m.runs, axis)) return false;
   const RestoringLaw law = swings ? law_of_swing(m.runs, axis) : RestoringLaw::weight;
-  m.why = swings ? restoring_law_text(law, seen + " that passes zero again and again")
-                 : seen + over_weight;
+  m.why =
+      swings ? restoring_law_text(law, seen + " that crosses zero repeatedly") : seen + over_weight;
   const bool is_spring = law == RestoringLaw::spring;
   if (is_spring == (k == 2)) return true;
   m.rate_from = k;
@@ -291,7 +292,8 @@ bool infer_from_scalars(Machine& m) {
   if (m.sees_attitude() || m.has_three_rates()) return false;
   if (m.has("rate_magnitude_rad_s")) {
     m.why =
-        "the magnitude of a rate and no axis: thrown or in orbit, nothing carries it. On a bearing "
+        "only the magnitude of the rate: assumed to be a free body (thrown or in orbit). On a "
+        "bearing "
         "it is \"tabletop\".";
     m.observe_as(Topology::free);
     return true;
@@ -324,7 +326,8 @@ void infer_machine(Machine& m) {
   if (infer_from_scalars(m)) return;
   if (!m.sees_attitude() && !m.has_three_rates()) return infer_one_axis(m);
   m.why =
-      "three rates and no attitude: thrown, in orbit, or on gimbals, nothing carries it. On a "
+      "three rates without attitude: assumed to be a free body (thrown, in orbit, on gimbals). On "
+      "a "
       "bearing or with a weight off the centre it is \"tabletop\".";
   if (!m.sees_attitude()) {
     m.observe_as(Topology::free);
@@ -348,22 +351,22 @@ void infer_machine(Machine& m) {
     }
     if (!axis) return;
     m.why = std::string("three rates, of which that about ") + "xyz"[*axis] +
-            " is all but a twentieth: it turns about one axis.";
+            " contains more than 95 % of the rotation: one axis.";
     return m.observe_as(Topology::one_axis, Vec3::Unit(*axis));
   }
   if (is_in_space(m.names.front())) {
-    m.why = "an attitude relative to an inertial frame: in orbit, nothing carries it.";
+    m.why = "an attitude relative to an inertial frame: a free body in orbit.";
     return m.observe_as(Topology::free);
   }
   m.observe_as(Topology::tabletop);
   const std::optional<FreeInertia> found = free_inertia(m.runs);
   if (found && found->left < explains && !m.is_commanded()) {
-    m.why = "its rates change as its own inertia makes them: nothing carries it.";
+    m.why = "the rates agree with torque-free motion: a free body.";
     return m.observe_as(Topology::free);
   }
   m.why =
       "an attitude about three axes that does not follow from inertia alone: a platform on a "
-      "bearing (\"free\" for what is in orbit or thrown).";
+      "bearing (\"free\" for a body in orbit or thrown).";
 }
 
 // Removes the velocity of a coordinate that is also recorded: it is usually computed from the

@@ -264,7 +264,7 @@ TEST(Machines, TheDrivenPartOfARunIsOmitted) {
   EXPECT_LT(cut.all[0].time_s.front(), 62.0);
   EXPECT_DOUBLE_EQ(cut.all[0].time_s.back(), recording.time_s.back());
   ASSERT_EQ(cut.exclusions.size(), 1u);
-  EXPECT_THAT(cut.exclusions[0], HasSubstr("something else acts before"));
+  EXPECT_THAT(cut.exclusions[0], HasSubstr("another torque acts before"));
 
   const Diagnosis d = diagnose(wheel, {{"wheel.csv", recording}}, {});
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));

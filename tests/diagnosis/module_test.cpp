@@ -331,7 +331,7 @@ TEST(ModuleDiagnosis, NotesAReferenceOfTheOtherSign) {
   EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
   EXPECT_THAT(d.warnings,
               testing::Contains(file.filename().string() +
-                                ": currents are negative in light; counted the other way round"));
+                                ": currents are negative in light; their sign was reversed"));
 }
 
 TEST(ModuleDiagnosis, NamesNothingInOtherLight) {

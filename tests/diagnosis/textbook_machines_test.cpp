@@ -223,7 +223,7 @@ TEST(TextbookMachines, AFanThatIsSwitchedOn) {
   });
   const Diagnosis d = diagnosed(machine(about("z", "angle]\nnoise_arcsec = 365")), interval_s,
                                 {{"angle_rad", rounded(angle_rad, 2.0 * pi / 1024.0)}});
-  EXPECT_THAT(d.warnings, Contains(HasSubstr("it rests and then sets off at once")));
+  EXPECT_THAT(d.warnings, Contains(HasSubstr("the body is at rest and then starts suddenly")));
   EXPECT_THAT(kinds_of(d), UnorderedElementsAre("room_draft", "air_pressure_drag")) << d.sentence;
   expect_number(d, "air_pressure_drag", "coefficient_N_m_s2", 0, form);
 }

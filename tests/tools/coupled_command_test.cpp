@@ -300,7 +300,7 @@ TEST_F(CoupledCommand, NoRunEndsAtTheEdgeOfATable) {
     if (i % 2 == 0) words += " --set 'disturbance[0].offset_m=[0,0,1e-4]'";
     if (i % 4 == 0) words += " --set light.max_tilt_deg=" + std::to_string(between(1.0, 20.0));
     const Outcome got = succeed(words + " --out " + at("o"));
-    wider += got.out.find("again with a wider table") != std::string::npos ? 1 : 0;
+    wider += got.out.find("repeated with a wider table") != std::string::npos ? 1 : 0;
     const double end_s = csv_table(at("o/time_history.csv")).at("t_s").back();
     if (end_s > 119.0) continue;
     ASSERT_TRUE(std::filesystem::exists(at("o/events.csv"))) << words;

@@ -96,7 +96,7 @@ TEST_F(DiagnoseCommand, RecordingsOfTwoKindsAreListedByName) {
   for (const std::string& both : {"--recording " + recording_ + " --recording " + curve,
                                   "--recording " + recording_ + " --holdout " + curve}) {
     EXPECT_THAT(refused("diagnose " + experiment_ + " " + both + " --quiet --out " + at("answer")),
-                HasSubstr("curve.csv: found a recording of light"));
+                HasSubstr("curve.csv: found column names of light"));
   }
   EXPECT_THAT(refused("diagnose " + experiment_ + " --recording " + recording_ + " " + curve +
                       " --out " + at("answer")),
@@ -195,7 +195,7 @@ initial_rate_rad_s = [0, 0, 0.05]
   // No light among the recordings, no light held out.
   EXPECT_THAT(refused("diagnose " + lab + " --recording " + at("propagated/recording.csv") +
                       " --holdout " + both + " --quiet --out " + at("answer")),
-              HasSubstr("run.csv: found a recording of light"));
+              HasSubstr("run.csv: found column names of light"));
 }
 
 TEST_F(DiagnoseCommand, AnExperimentWithoutACommandIsReported) {

@@ -15,9 +15,9 @@ TEST_F(DirectRouteCommand, ManyPairsAreLeftToTheRaysWithANote) {
   // 49 lamps over 640 × 640 bins: 2.01 s at 0.1 µs a pair.
   const Outcome left = succeed(few_rays + " --set receiver[0].bins=[640,640]");
   EXPECT_THAT(left.out, HasSubstr("by rays alone"));
-  EXPECT_THAT(left.out, Not(HasSubstr("\n  direct light on solar_array: gathered")));
+  EXPECT_THAT(left.out, Not(HasSubstr("\n  direct light on solar_array: quadrature")));
   const Outcome gathered = succeed(few_rays);
-  EXPECT_THAT(gathered.out, HasSubstr("\n  direct light on solar_array: gathered"));
+  EXPECT_THAT(gathered.out, HasSubstr("\n  direct light on solar_array: quadrature"));
 }
 
 }  // namespace

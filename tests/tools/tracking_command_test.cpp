@@ -83,7 +83,7 @@ TEST_F(TrackingCommands, AnEstimateListsUnreadableRows) {
   const Outcome got =
       succeed("estimate " + tracked + named + "--recording " + recording + " --out " + at("z"));
   EXPECT_THAT(got.out, HasSubstr("100 quaternions that are not of unit norm left out"));
-  EXPECT_THAT(got.out, HasSubstr("no attitude was read"));
+  EXPECT_THAT(got.out, HasSubstr("no attitude was measured"));
   // Four of a hundred rows lie in the twentieth in which the filter settles.
   EXPECT_THAT(refused("estimate " + tracked + named + "--recording " + recording + " --truth " +
                       start + " --out " + at("t")),

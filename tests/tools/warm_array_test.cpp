@@ -67,8 +67,8 @@ TEST_F(WarmArrayCommand, CellsAboveTheirRatedTemperatureAreAWarning) {
 
 TEST_F(WarmArrayCommand, PowerStatesSpectrumAndSlope) {
   const json lit = power("");
-  EXPECT_THAT(out_, HasSubstr("spectrum                light at "));
-  EXPECT_THAT(out_, testing::ContainsRegex("power over temperature  -0\\.[0-9]+ W/K"));
+  EXPECT_THAT(out_, HasSubstr("Solar array at its maximum power point, light at "));
+  EXPECT_THAT(out_, testing::ContainsRegex("electric power .*, -0\\.[0-9]+ W/K"));
 }
 
 TEST_F(WarmArrayCommand, TorqueMapsStateTheTemperatureOfTheirPower) {
@@ -94,7 +94,7 @@ TEST_F(WarmArrayCommand, MorePowerThanTheSurfaceAbsorbsIsAWarning) {
     return summary().at("warnings").dump();
   };
   EXPECT_EQ(warnings("absorptance = 1\n"), "[]");
-  EXPECT_THAT(out_, HasSubstr("spectrum                sunlight AM1.5G"));
+  EXPECT_THAT(out_, HasSubstr("maximum power point, sunlight AM1.5G"));
   EXPECT_THAT(warnings("absorptance = 0.1\nspecular = 0.9\n"),
               HasSubstr("their material absorbs only 10 %"));
 }

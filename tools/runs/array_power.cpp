@@ -227,20 +227,17 @@ void print_array(const Console& console, const ArrayPower& read, const ArrayResu
                  const TraceResult& result) {
   const ArrayDesign& design = read.design;
   const double emitted = result.power_balance.emitted_W;
-  console.heading("Solar array (maximum power point)");
+  console.heading("Solar array at its maximum power point, " + read.spectra);
   console.line("  light on the cells      " + show(array.power_on_cells_W, "W") + "  (" +
                show_percent(array.power_on_cells_W.value / emitted) + " of emitted)");
-  console.line("  spectrum                " + read.spectra);
+  const std::string slope =
+      array.power_W.value > 0.0 ? ", " + show_brief(array.power_per_K_W) + " W/K" : "";
   console.line("  electric power          " + show(array.power_W, "W") + "  (" +
-               show_percent(array.efficiency.value) + " of the light on the cells)");
+               show_percent(array.efficiency.value) + " of the light on the cells)" + slope);
   console.line("  voltage, current        " + show(array.voltage_V, "V") + ", " +
                show(array.current_A, "A"));
   console.line("  cell temperature        " + show_temperature(array.temperature_K.value) + ", " +
                origin_of_temperature(design));
-  if (array.power_W.value > 0.0) {
-    console.line("  power over temperature  " + show_brief(array.power_per_K_W) + " W/K  (" +
-                 show_percent(array.power_per_K_W / array.power_W.value) + "/K)");
-  }
   console.line("  sum of cell maxima      " + show(array.sum_of_cells_W, "W") + "  (" +
                show_percent(array.mismatch_loss.value) + " lost to uneven light and diodes)");
   if (array.mismatch_loss.value > 0.2) {

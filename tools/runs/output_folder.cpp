@@ -46,7 +46,7 @@ fs::path place_of(const fs::path& folder) {
   return place.has_filename() ? place : place.parent_path();  // without a trailing slash
 }
 
-// Folders in which every user may have folders of their own.
+// Folders in which every user may create folders.
 bool is_of_all_users(const fs::path& place) {
   constexpr std::array<std::string_view, 11> shared = {"/",    "/dev/shm", "/home",   "/media",
                                                        "/mnt", "/opt",     "/srv",    "/run/user",

@@ -100,7 +100,7 @@ void RunDatabase::fail(const std::string& what) const {
   const bool damaged = !what.empty() || code == SQLITE_NOTADB || code == SQLITE_CORRUPT;
   throw InputError({path_.string()}, "", what.empty() ? sqlite3_errmsg(handle_) : what,
                    damaged
-                       ? "a database of designs; after it is moved away, all designs are recomputed"
+                       ? "a database of designs; move it away to recompute all designs"
                        : "a database that can be read and written");
 }
 

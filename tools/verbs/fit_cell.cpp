@@ -1,6 +1,5 @@
 // photorque fit-cell: parameters of a solar cell, module or shaded string from measurements.
 #include "tools/verbs/fit_cell.h"
-#include "core/settings/files.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +8,10 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/settings/files.h"
 #include "core/settings/settings.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
-#include "photovoltaics/cell/response.h"
 #include "photovoltaics/fit/conditions.h"
 #include "photovoltaics/fit/curve_text.h"
 #include "photovoltaics/fit/fit.h"
@@ -532,68 +531,6 @@ Product fit_uneven_light(const FitTask& task, const Console& console) {
   rows.push_back({"rms_current_A", {fit.rms_A, 0.0}});
   Product product = parameter_product(rows);
   add_fit_plot(task, scan.points, scan.maxima, product);
-  return product;
-}
-
-// The peak of silicon's quantum efficiency that gives the photocurrent of a cell of the module in
-// AM1.5G sunlight. Requires the area of the module.
-double efficiency_peak_of(const ListedModule& module) {
-  const WeighedSpectrum sunlight[] = {{{.shape = Spectrum::Shape::am15g}}};
-  const double amperes_W =
-      band_responsivity_A_W(silicon_quantum_efficiency(1.0), Bands{}, sunlight)[0];
-  return module.photocurrent_A /
-         (amperes_W * module.rated.irradiance_W_m2 * module.cell.reference_area_m2);
-}
-
-// Lists the cell of a library module as keys, with its listed and computed ratings.
-Product list_module(const ListedModule& module, const Console& console) {
-  const CellParameters& p = module.cell.reference;
-  const RatedPoint& rated = module.rated;
-  const RatedPoint gives = module.predict(rated.irradiance_W_m2, rated.temperature_K);
-  const double listed_W = rated.maximum_A * rated.maximum_V;
-  const double given_W = gives.maximum_A * gives.maximum_V;
-  console.heading(module.name);
-  console.line("  " + std::to_string(module.cells_in_series) + " cells in series" +
-               (module.strings > 1 ? ", " + std::to_string(module.strings) + " in parallel" : ""));
-  console.line("  maximum power " + show(given_W) + " W, listed " + show(listed_W) + " W, at " +
-               show(rated.irradiance_W_m2) + " W/m² and " + show(rated.temperature_K) + " K");
-  for (const std::string& note : module.notes) console.line("  note: " + note);
-  constexpr double usual = 0.01;
-  if (std::abs(given_W - listed_W) > usual * listed_W) {
-    console.line("  warning: the circuit and the listed maximum power differ by " +
-                 show_percent(given_W / listed_W - 1.0));
-  }
-  const bool has_area = module.area_m2 > 0.0, is_exponential = std::isfinite(p.shunt_dark_ohm);
-  std::vector<CellRow> rows = {{"saturation_1_A", {p.saturation_1_A}},
-                               {"ideality_1", {p.ideality_1}},
-                               {"series_ohm", {p.series_ohm}},
-                               {"shunt_ohm", {p.shunt_ohm}},
-                               {"shunt_photocurrent_A", {p.shunt_light_A}}};
-  if (is_exponential) rows.push_back({"shunt_dark_ohm", {p.shunt_dark_ohm}});
-  if (is_exponential) rows.push_back({"shunt_exponent", {p.shunt_exponent}});
-  rows.push_back({"gap_eV", {module.cell.gap_eV}});
-  rows.push_back({"gap_slope_per_K", {module.cell.gap_slope_1_K}});
-  rows.push_back({"photocurrent_slope_per_K", {module.cell.photocurrent_slope_1_K}});
-  rows.push_back({"reference_temperature_K", {p.temperature_K}});
-  if (has_area) rows.push_back({"reference_area_m2", {module.cell.reference_area_m2}});
-  console.heading("One cell, for [array.cell_parameters]");
-  for (const CellRow& row : rows) print_key(console, row.name.c_str(), row.estimate.value);
-  if (!has_area) console.line("  reference_area_m2 =   # to be filled in: the area of one cell");
-  if (has_area) {
-    const double peak = efficiency_peak_of(module);
-    console.heading("For [array]: this photocurrent in AM1.5G sunlight");
-    print_key(console, "quantum_efficiency_peak", peak);
-    if (peak > 1.0) {
-      console.line(
-          "  warning: above 1: this photocurrent needs another quantum efficiency than that shape "
-          "([array.quantum_efficiency]), or the listed area is too small");
-    }
-    rows.push_back({"quantum_efficiency_peak", {peak}});
-  }
-  rows.push_back({"photocurrent_A", {module.photocurrent_A}});
-  rows.push_back({"maximum_power_W", {given_W}});
-  Product product = parameter_product(rows);
-  add_cell_plot({}, CellCurve(in_light(p, module.photocurrent_A)), module.photocurrent_A, product);
   return product;
 }
 

@@ -67,6 +67,9 @@ void print_key(const Console& console, const char* name, double value,
 void print_cell(const Console& console, const SingleDiode& diode, const FitTask& task,
                 const CellParameters& reference = {});
 
+// Prints the cell of a library module as keys, with its listed and computed ratings.
+Product list_module(const ListedModule& module, const Console& console);
+
 // Adds measured points and a fitted curve, as current and as power.
 void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
                   const std::vector<ArrayPoint>& maxima, Product& product);

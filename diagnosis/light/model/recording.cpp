@@ -489,7 +489,7 @@ std::vector<std::string> reading_notes(const std::vector<LightRecording>& record
   for (const LightRecording& recording : recordings) {
     const std::string name = std::filesystem::path(recording.name).filename().string();
     if (recording.is_reversed) {
-      notes.push_back(name + ": currents are negative in light; counted the other way round");
+      notes.push_back(name + ": currents are negative in light; their sign was reversed");
     }
     if (recording.is_stacked) {
       notes.push_back(name + ": the voltage returns in one step; read as " +
