@@ -49,7 +49,9 @@ class Notebooks(unittest.TestCase):
         self.assertEqual(found["motion"].time_s[-1], 3600)
         # Body z of the quaternions leans by the tilt.
         tilt_rad = np.arcsin(np.linalg.norm(found["body_z_lab"], axis=0).max())
-        self.assertAlmostEqual(np.degrees(tilt_rad), float(found["motion"].figures["largest_tilt_deg"]), places=6)
+        # The largest tilt may lie between two rows.
+        largest_deg = float(found["motion"].figures["largest_tilt_deg"])
+        self.assertTrue(0.0 <= largest_deg - np.degrees(tilt_rad) < 0.01)
 
     def test_diagnosis(self):
         answer = self.run_notebook("diagnosis")["answer"]
