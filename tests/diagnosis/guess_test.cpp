@@ -161,7 +161,7 @@ TEST(Guess, RatesThatFollowNoInertiaAreReinterpreted) {
                 for (size_t k = 0; k < 3; ++k) times(k, 1.0 / degree_rad)(r);
               }),
               HasSubstr("the gyro reads degrees per second"));
-  EXPECT_THAT(repaired(times(3, -1.0)), HasSubstr("the sign of wheel_z_rad_s was turned"));
+  EXPECT_THAT(repaired(times(3, -1.0)), HasSubstr("the sign of wheel_z_rad_s was reversed"));
 }
 
 std::vector<NamedRecording> throws_of(const std::vector<std::pair<std::string, Mat3>>& bodies) {
