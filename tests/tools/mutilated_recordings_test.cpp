@@ -94,7 +94,8 @@ TEST_F(MutilatedRecordings, ThrowsWithAWheel) {
   exchanged.exchange(1, 2);
   expect_found("throw_flywheel", exchanged, {"wheel_momentum"}, "the gyro's axes");
   wheel.multiply(7, -1.0);
-  expect_found("throw_flywheel", wheel, {"wheel_momentum"}, "the sign of wheel_z_rad_s was turned");
+  expect_found("throw_flywheel", wheel, {"wheel_momentum"},
+               "the sign of wheel_z_rad_s was reversed");
 }
 
 TEST_F(MutilatedRecordings, Racquets) {

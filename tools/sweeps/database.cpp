@@ -99,9 +99,8 @@ void RunDatabase::fail(const std::string& what) const {
   const int code = sqlite3_errcode(handle_) & 0xff;
   const bool damaged = !what.empty() || code == SQLITE_NOTADB || code == SQLITE_CORRUPT;
   throw InputError({path_.string()}, "", what.empty() ? sqlite3_errmsg(handle_) : what,
-                   damaged
-                       ? "a database of designs; move it away to recompute all designs"
-                       : "a database that can be read and written");
+                   damaged ? "a database of designs; move it away to recompute all designs"
+                           : "a database that can be read and written");
 }
 
 void RunDatabase::execute(const std::string& sql) const {
