@@ -288,6 +288,10 @@ AxisReadings angles_over_weight(const Observation& rows, const Vec3& axis) {
   } else {
     angles.value = integral(rates.time_s, rates.value);
   }
+  // Readings more than a quarter of a turn apart do not resolve a turn.
+  for (size_t i = 1; i < angles.value.size(); ++i) {
+    if (std::abs(angles.value[i] - angles.value[i - 1]) > 0.5 * pi) return {};
+  }
   const auto [least, most] = std::ranges::minmax(angles.value);
   return most - least > pi && shows_weight(rates, angles.value) ? angles : AxisReadings();
 }

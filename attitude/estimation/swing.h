@@ -43,7 +43,8 @@ AxisReadings angles_of_swing(const Observation& rows, const Vec3& axis);
 // the angles are their integral, zero at the start. Empty unless the readings show a torque that
 // changes once per turn, as a weight exerts it about a level axis. The rates are fitted with time
 // integrals of a constant, dry, viscous and quadratic friction, and then also of sine and cosine of
-// the angle. The second fit must halve the sum of squares.
+// the angle. The second fit must halve the sum of squares, and
+// neighbouring readings must be less than a quarter of a turn apart.
 AxisReadings angles_over_weight(const Observation& rows, const Vec3& axis);
 
 // Angles of which only rates were measured: angles_of_swing(), otherwise angles_over_weight().
