@@ -137,7 +137,7 @@ TEST_F(MutilatedRecordings, CurvesOfAModule) {
   milli.multiply(1, 1e3);
   expect_refused("pv_cracked", milli, "a column in milliamperes is named current_mA");
   reversed.multiply(1, -1.0);
-  expect_found("pv_cracked", reversed, {"cell_cracked"}, "counted the other way round");
+  expect_found("pv_cracked", reversed, {"cell_cracked"}, "their sign was reversed");
 }
 
 }  // namespace
