@@ -331,7 +331,7 @@ TEST(Weigh, FindsAnEffectThatOnlyAllRunsShow) {
 // Two tones of different frequency, of which one may be named: a search that ended at the weaker
 // finds the stronger in all runs together.
 TEST(Weigh, FindsTheFrequencyOfAnOscillationAgain) {
-  constexpr size_t degree_2 = 0, of_tone = 1;
+  constexpr size_t of_tone = 1;
   constexpr double weak = 20.0, strong = 31.0;
   const auto found = [&](bool swings) {
     std::vector<Term> terms = {polynomial(2), tone()};
@@ -343,7 +343,8 @@ TEST(Weigh, FindsTheFrequencyOfAnOscillationAgain) {
     }
     const Recorded seen(signal);
     std::vector<LineDomain::Trial> trials = {domain.nominal(seen.train)};
-    for (const auto& [c, start] : {std::pair{degree_2, LineDomain::Start{}}, {of_tone, {weak}}}) {
+    for (const auto& [c, start] :
+         {std::pair{size_t{0}, LineDomain::Start{}}, std::pair{of_tone, LineDomain::Start{weak}}}) {
       trials.push_back(domain.extend(trials.back(), c, start, seen.train, {}));
     }
     weigh_with_held_out(domain, seen.train, seen.held, 1, trials);
