@@ -21,12 +21,10 @@ class Judge {
     // Gates (b) and (c) of decide.h.
     const size_t named = needed_by_segments(pruned(best(false)), gains, unneeded);
     Decision d;
-    d.probability = posterior();
+    d.probability = posterior(named);
     d.best_named = d.chosen = named;
     // Gate (d).
-    const bool only_empirical =
-        empirical != 0 &&
-        trials_[empirical].log_evidence > trials_[named].log_evidence + limits_.min_log_odds;
+    const bool only_empirical = empirical != 0 && is_missed(named, empirical);
     const bool leaves_structure = checks_.excess_sigma(named) > limits_.max_excess_sigma;
     const bool is_predictive = predicts(named);
     if (only_empirical || leaves_structure || !is_predictive) {
@@ -139,10 +137,14 @@ class Judge {
     }
   }
 
-  // Posterior probability of each trial. It is 0 for unphysical trials and for trials with a
-  // candidate that does not differ significantly from zero.
-  std::vector<double> posterior() const {
-    const auto counts = [&](size_t i) { return trials_[i].objection.empty() && is_significant(i); };
+  // Posterior probability of each trial. It is 0 for unphysical trials, for trials with a candidate
+  // that does not differ significantly from zero, and for empirical laws that predict the held-out
+  // data worse than the best known physics.
+  std::vector<double> posterior(size_t named) const {
+    const auto counts = [&](size_t i) {
+      return trials_[i].objection.empty() && is_significant(i) &&
+             (named == 0 || !is_empirical(i) || predicts_as_well(named, i));
+    };
     double best = -1e300;
     for (size_t i = 0; i < trials_.size(); ++i) {
       if (counts(i)) best = std::max(best, trials_[i].log_evidence);
@@ -332,11 +334,16 @@ class Judge {
            std::includes(all.begin(), all.end(), fewer.begin(), fewer.end());
   }
 
-  // Whether `whole` beats `part` by the full threshold and does not predict the held-out data
+  // Whether `other` beats `trial` by the full threshold and does not predict the held-out data
   // worse.
-  bool is_missed(size_t part, size_t whole) const {
-    const Explanation &a = trials_[part], &b = trials_[whole];
-    if (b.log_evidence < a.log_evidence + limits_.min_log_odds) return false;
+  bool is_missed(size_t trial, size_t other) const {
+    return trials_[other].log_evidence >= trials_[trial].log_evidence + limits_.min_log_odds &&
+           predicts_as_well(trial, other);
+  }
+
+  // Whether `other` does not predict the held-out data worse than `trial`.
+  bool predicts_as_well(size_t trial, size_t other) const {
+    const Explanation &a = trials_[trial], &b = trials_[other];
     const auto &before = a.holdout_chi2_per_sample, &after = b.holdout_chi2_per_sample;
     if (!a.predictive || !b.predictive) {
       return !before || !after || *after <= limits_.max_held_out_growth * std::max(1.0, *before);

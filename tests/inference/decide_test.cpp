@@ -136,6 +136,23 @@ TEST(Decide, AnUnlikelyNameIsNotReported) {
   EXPECT_EQ(decided(trials, limits, all).verdict, Verdict::missing_physics);
 }
 
+// A law without a name is more likely, but predicts the held-out data far worse than the name.
+TEST(Decide, ALawThatDoesNotPredictDoesNotRivalAName) {
+  const std::vector<CandidateTraits> all = {{.name = "first"},
+                                            {.name = "law", .is_empirical = true}};
+  std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
+                                     explanation({1}, 110.0, 1.0)};
+  EXPECT_EQ(decided(trials, {}, all).verdict, Verdict::unexplained);
+  trials[0].holdout_chi2_per_sample = 900.0;
+  trials[1].holdout_chi2_per_sample = 1.0;
+  trials[2].holdout_chi2_per_sample = 60.0;
+  EXPECT_EQ(decided(trials, {}, all).verdict, Verdict::missing_physics);
+  EXPECT_GT(decided(trials, {}, all).confidence, 0.99);
+  Thresholds::Decision mutant;
+  mutant.max_held_out_growth = 100.0;
+  EXPECT_EQ(decided(trials, mutant, all).verdict, Verdict::unexplained);
+}
+
 // Two that explain as much are one answer: the first with the second in its place.
 TEST(Decide, AnIndistinguishableNameIsReportedToo) {
   const Decision d = decided(
