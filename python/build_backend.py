@@ -85,7 +85,7 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
 def module_files(package):
     """The module in the built `package` folder and its files: {name in the wheel: path}."""
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
-    return {f"photorque/{file.name}": file for file in sorted(package.iterdir())
+    return {f"photorque/{file.relative_to(package)}": file for file in sorted(package.rglob("*"))
             if file.name.endswith(suffix) or file.suffix in (".py", ".pyi", ".typed")}
 
 

@@ -1,4 +1,4 @@
-"""python3 -m validation: see prove.py."""
+"""python3 -m validation, or python3 -m photorque.prove where the module is installed: see prove.py."""
 
 import os
 import sys

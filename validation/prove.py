@@ -7,6 +7,7 @@ import importlib
 import multiprocessing
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -45,8 +46,8 @@ def parsed(arguments):
     parser = argparse.ArgumentParser(
         prog="tools/prove", description="Inject effects in recordings, diagnose them blind, score the answers.")
     parser.add_argument("settings", type=pathlib.Path, help="settings file with a table [prove]: docs/proof.toml")
-    parser.add_argument("--program", type=pathlib.Path, default=pathlib.Path("build/photorque"),
-                        help="the photorque to be tried (default: build/photorque)")
+    parser.add_argument("--program", type=pathlib.Path, default=pathlib.Path(shutil.which("photorque") or "build/photorque"),
+                        help="the photorque to be tried (default: the installed one)")
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE",
                         help="change a key of the settings")
     parser.add_argument("-o", "--out", type=pathlib.Path, help="folder for the results (default: out/SETTINGS/prove)")
