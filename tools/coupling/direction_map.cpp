@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "attitude/disturbances/fields/torque_surface.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
@@ -113,6 +114,42 @@ void print_summary(const Console& console, const WrenchTable& table, const Dista
   }
   console.line("  mean force along its direction, divided by the pressure " +
                show(mean_push_N(table) / source.pressure_Pa) + " m2");
+}
+
+// Prints by how much the torque that a propagation interpolates in the table differs from the
+// torque of `light` in directions between the nodes. Only for wrenches without noise.
+void print_interpolation_error(const Console& console, const LightDirections& light,
+                               const WrenchTable& table, const DistantSource& source, int threads,
+                               Warnings& warnings) {
+  constexpr size_t fresh = 64;
+  constexpr double much = 0.05;
+  const TorqueSurface surface(table);
+  const std::vector<RigidTransform> attitudes = fresh_directions(fresh, source);
+  std::vector<double> differences_N_m(fresh);
+  parallel_for(fresh, threads, [&](size_t i) {
+    const DirectionWrench own = light.at(attitudes[i]);
+    const Vec3 towards_body = attitudes[i].inverse().direction(source.towards_lab);
+    Vec3 difference = surface.at(azimuth_and_elevation(towards_body)).torque_body_N_m;
+    for (size_t k = 0; k < 3; ++k) {
+      difference[static_cast<Eigen::Index>(k)] -=
+          own.direct[3 + k] + 0.5 * (own.bounced.first[3 + k] + own.bounced.second[3 + k]);
+    }
+    differences_N_m[i] = difference.norm();
+  });
+  double squares = 0.0;
+  for (const double one : differences_N_m) squares += one * one / fresh;
+  const double largest_N_m = std::max(largest_torque_N_m(table), 1e-300);
+  const double rms = std::sqrt(squares) / largest_N_m;
+  const std::string found =
+      readable_number(rms, 2) + " of the largest torque (rms in " + std::to_string(fresh) +
+      " directions), at most " +
+      readable_number(*std::ranges::max_element(differences_N_m) / largest_N_m, 2);
+  console.line("  error of interpolation between the nodes: " + found);
+  if (rms > much) {
+    warnings.add({"the directions are too far apart: interpolation errors are " + found +
+                  ". Choose smaller torque_map.azimuth_step_deg and elevation_step_deg"},
+                 "the table");
+  }
 }
 
 // The completed directions in order, with a checkpoint at intervals.
@@ -250,7 +287,8 @@ DirectionMap map_over_directions(const Console& console, const OpticalRun& run, 
   std::unique_ptr<LightDirections> light =
       is_gas ? flow_directions(run, source, table.about_body_m)
              : sunlit_directions(run, source, table.about_body_m, threads);
-  if (!light) light = traced_directions(run, source, table.about_body_m);
+  const bool is_noisy = light == nullptr;
+  if (is_noisy) light = traced_directions(run, source, table.about_body_m);
   DoneDirections done(run, console, checkpoint);
   find_all(*light, distinct, console, threads, done);
 
@@ -271,6 +309,9 @@ DirectionMap map_over_directions(const Console& console, const OpticalRun& run, 
   if (watch) show_nodes(run, all, table.nodes(), watch);
   const double wall_s = wall.elapsed_s();
   print_summary(console, table, source, is_gas ? "Drag" : "Light pressure");
+  if (whole && !is_noisy) {
+    print_interpolation_error(console, *light, table, source, threads, warnings);
+  }
 
   warnings.print(console);
   RunResult result{wrench_table_product(table, "body", is_gas ? "gas" : "light"),
