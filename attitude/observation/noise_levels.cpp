@@ -12,6 +12,11 @@ namespace photorque {
 
 namespace {
 
+// Least noise of a reading over the rms of the readings, about the rounding to 20 bits. A lower
+// one, of a simulation without noise, is the error of an integrator; differences of log evidence
+// would be lost in double precision.
+constexpr double finest = 1e-6;
+
 struct ReadingAt {
   double time_s, value;
 };
@@ -161,7 +166,7 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
   }
   const double least = std::max(level, rounding);
   if (!(least > 0.0)) return std::nullopt;
-  return least;
+  return std::max(least, finest * std::sqrt(squares / readings));
 }
 
 namespace {
@@ -250,7 +255,13 @@ std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
                                      const std::vector<KinematicRun>& runs, int k,
                                      const Thresholds::Noise& limits) {
   std::vector<double> powers;
+  double squares = 0.0, readings = 0.0;
   for (size_t run = 0; run < runs.size(); ++run) {
+    for (size_t i = 0; i < seen[run].blocks(); ++i) {
+      if (!(seen[run].gyro_rows[i][k] > 0.0)) continue;
+      squares += std::pow(seen[run].gyro_rad_s[i][k], 2);
+      readings += 1.0;
+    }
     const Differences d = differences_of(seen[run], runs[run], k);
     if (2 * d.count < d.values.size() || d.count < limits.min_differences) continue;
     add_powers(d, powers);
@@ -265,7 +276,7 @@ std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
   // neighbours are correlated, which reduces their number by a factor of 1.9.
   const double power = sum / static_cast<double>(powers.size()) / (1.0 - std::log(5.0) / 4.0);
   const double sigma = 0.5 * 1.15 * std::sqrt(1.9 * 0.8 / static_cast<double>(powers.size()));
-  return NoiseLevel{std::sqrt(power), sigma};
+  return NoiseLevel{std::max(std::sqrt(power), finest * std::sqrt(squares / readings)), sigma};
 }
 
 namespace {
