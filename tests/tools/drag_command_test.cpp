@@ -7,6 +7,7 @@ namespace photorque {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class DragCommands : public CommandTest {
  protected:
@@ -63,6 +64,18 @@ initial_attitude = [0.92387953251, -0.38268343237, 0, 0]
   // The orbit is needed.
   EXPECT_THAT(refused("propagate " + orbit + " --set 'disturbance[0]={kind=\"gravity_gradient\"}'"),
               HasSubstr("found \"aerodynamic_drag\" of a platform on the ground"));
+}
+
+// The torque is proportional to |sin 2e| at the elevation e, with a kink at e = 0 that wide steps
+// round off.
+TEST_F(DragCommands, ATableWithTooFewDirectionsRaisesAWarning) {
+  const std::string map = "torque-map " + write_gas() + " --out " + at("map");
+  EXPECT_THAT(succeed(map).out, HasSubstr("WARNING: the table: the directions are too far apart"));
+  const std::string fine =
+      succeed(map + " --set torque_map.azimuth_step_deg=5 --set torque_map.elevation_step_deg=5")
+          .out;
+  EXPECT_THAT(fine, HasSubstr("error of interpolation between the nodes: 0.00"));
+  EXPECT_THAT(fine, Not(HasSubstr("WARNING")));
 }
 
 TEST_F(DragCommands, AGasFlowIsRefusedWhereThereIsLight) {
