@@ -282,21 +282,7 @@ std::vector<Key> led_array_keys() {
 }  // namespace
 
 SourceKind kind() {
-  return {"led_array",
-          "Equal LEDs in a grid, ring, hexagon or at given points",
-          make,
-          {{"layout", {"ring"}},
-           {"count", {int64_t{6}}},
-           {"ring_radius_m", {0.2}},
-           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-           {"aim", {"converging"}},
-           {"aim_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}},
-           {"total_power_W", {90.0}},
-           {"aperture_diameter_m", {0.03}},
-           {"profile", {"super_gaussian"}},
-           {"fwhm_deg", {3.0}},
-           {"order", {4.0}},
-           {"wavelength_nm", {730.0}}},
+  return {"led_array", "Equal LEDs in a grid, ring, hexagon or at given points", make,
           led_array_keys()};
 }
 

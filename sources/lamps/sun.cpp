@@ -183,10 +183,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind kind() {
-  return {"sun",
-          "Parallel light from a disc in the sky, of a given irradiance",
-          make,
-          {{"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}},
+  return {"sun", "Parallel light from a disc in the sky, of a given irradiance", make,
           joined({{source_key::name.with_default("sun"), source_key::light_direction},
                   sunlight_keys(),
                   {key::sun_shape.bringing({{key::angular_radius, key::limb_darkening},
