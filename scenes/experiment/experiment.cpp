@@ -267,9 +267,4 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
   return experiment;
 }
 
-Experiment read_experiment(const std::filesystem::path& path,
-                           std::span<const std::string> overrides, const PictureReader& picture) {
-  return resolve_experiment(read_experiment_file(path, overrides), picture);
-}
-
 }  // namespace photorque

@@ -158,9 +158,4 @@ struct Experiment {
 // a missing node, any key that was not read, and textures without a `picture` reader.
 Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture = {});
 
-// Calls read_experiment_file() and resolve_experiment().
-Experiment read_experiment(const std::filesystem::path& path,
-                           std::span<const std::string> overrides = {},
-                           const PictureReader& picture = {});
-
 }  // namespace photorque

@@ -320,8 +320,8 @@ void shadow_rays(benchmark::State& state, const Case& which, double disc_radius_
 }
 
 void stasis_30_deg_gather(benchmark::State& state) {
-  const Experiment stasis =
-      read_experiment(std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml");
+  const Experiment stasis = resolve_experiment(
+      read_experiment_file(std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml"));
   const TraceableScene scene(stasis.scene);
   for (const NamedReceiver& named : stasis.receivers) {
     if (!named.flux_map) continue;
