@@ -12,6 +12,13 @@ namespace photorque {
 
 // Hits before they reach the receivers, with data that only the tracer needs.
 struct HitBuffer {
+  explicit HitBuffer(int bands) {
+    hits.bands = bands;
+    for (size_t k = 0; k < 3; ++k) hits.direction[k] = ray[3 + k].data();
+  }
+  HitBuffer(const HitBuffer&) = delete;
+  HitBuffer& operator=(const HitBuffer&) = delete;
+
   Hits hits;
   Hits::Column<uint32_t> sample;
   // Rays in single precision: ox oy oz dx dy dz, then the bits of `sample`, then padding.

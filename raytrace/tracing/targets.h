@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "raytrace/parallel_light.h"
+#include "raytrace/emitter.h"
 #include "raytrace/tracing/traceable_scene_data.h"
 
 namespace photorque {

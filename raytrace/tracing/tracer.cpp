@@ -86,10 +86,7 @@ BatchTracer::BatchTracer(const TraceableScene::Data& scene,
     : scene_(scene),
       receivers_(receivers),
       options_(options),
-      hits_(std::make_unique<HitBuffer>()) {
-  hits_->hits.bands = scene.scene.bands.count();
-  for (size_t k = 0; k < 3; ++k) hits_->hits.direction[k] = hits_->ray[3 + k].data();
-}
+      hits_(std::make_unique<HitBuffer>(scene.scene.bands.count())) {}
 
 void BatchTracer::run(const BeamPlan& plan, const SobolStream& stream, uint32_t batch,
                       const HitOrigin& origin, TraceSums& sums) {

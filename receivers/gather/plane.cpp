@@ -182,13 +182,8 @@ std::vector<BinTile> squares_of(const SurfaceGrid& grid) {
   return squares;
 }
 
-GatherPlane::GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, const Bands& bands,
-                         Side side)
-    : scene_(scene),
-      grid_(grid),
-      bands_(bands),
-      side_(side),
-      patches_(bin_patches(scene.scene(), grid)) {
+GatherPlane::GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, Side side)
+    : scene_(scene), grid_(grid), side_(side), patches_(bin_patches(scene.scene(), grid)) {
   if (side == Side::back) patches_.normal = -patches_.normal;
   const double lean = patches_.normal.dot(grid.normal_body);
   const auto on_plane = [&](double u, double v) {

@@ -61,11 +61,11 @@ std::vector<BinTile> squares_of(const SurfaceGrid& grid);
 class GatherPlane {
  public:
   // `side` is front or back.
-  GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, const Bands& bands, Side side);
+  GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, Side side);
 
   const TraceableScene& scene() const { return scene_; }
   const SurfaceGrid& grid() const { return grid_; }
-  const Bands& bands() const { return bands_; }
+  const Bands& bands() const { return scene_.scene().bands; }
   // Optical surface of an instance on this side.
   const OpticalSurface& surface(uint32_t instance) const {
     const Scene& scene = scene_.scene();
@@ -90,7 +90,6 @@ class GatherPlane {
  private:
   const TraceableScene& scene_;
   const SurfaceGrid& grid_;
-  const Bands& bands_;
   Side side_;
   BinPatches patches_;
   Vec3 corner_m_, column_m_, row_m_;

@@ -12,7 +12,6 @@
 #include "core/files.h"
 #include "core/numerics/vector_math.h"
 #include "core/text/format.h"
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 #include "sources/photometry/file.h"
 #include "sources/profiles/beam_shape.h"

@@ -12,7 +12,6 @@
 #include "core/constants.h"
 #include "core/numerics/vector_math.h"
 #include "core/text/format.h"
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 #include "sources/profiles/sampling.h"
 

@@ -1,5 +1,4 @@
 // An LED with its lens: a round aperture with a given angular profile.
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 
 namespace photorque::kinds::led {

@@ -10,7 +10,6 @@
 
 #include "core/constants.h"
 #include "core/numerics/random.h"
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 
 namespace photorque::kinds::led_array {

@@ -11,7 +11,6 @@
 
 #include "core/numerics/vector_math.h"
 #include "core/text/format.h"
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 
 namespace photorque {

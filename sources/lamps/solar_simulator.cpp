@@ -9,7 +9,6 @@
 
 #include "core/constants.h"
 #include "core/numerics/vector_math.h"
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 #include "sources/profiles/sampling.h"
 

@@ -2,7 +2,7 @@
 // gives.
 #include <gtest/gtest.h>
 
-#include "raytrace/parallel_light.h"
+#include "raytrace/emitter.h"
 #include "raytrace/tracing/targets.h"
 #include "receivers/flux_map.h"
 #include "tests/receivers/gather_lamps.h"

@@ -2,7 +2,7 @@
 
 #include "core/constants.h"
 #include "sampling.h"
-#include "sources/lamps/disc.h"
+#include "sources/lamps/settings.h"
 
 namespace photorque {
 namespace {

@@ -230,7 +230,7 @@ void bare_embree(benchmark::State& state, const Case& which, bool sorts) {
   uint64_t rays = 0;
   for (auto _ : state) {
     parallel_for(repeats * batches.size(), threads, [&](size_t item) {
-      const auto buffer = std::make_unique<HitBuffer>();
+      const auto buffer = std::make_unique<HitBuffer>(1);
       const std::span<const Ray> batch = batches[item % batches.size()];
       std::vector<uint16_t> key, order;
       if (sorts) sort_by_landing(batch, key, order);

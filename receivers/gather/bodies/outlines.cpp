@@ -99,34 +99,23 @@ Outlines::Outlines(const Facets& facets) {
   }
 }
 
-std::vector<Line> Outlines::in_light(const Vec3& travel) const {
-  std::vector<Line> lines;
-  for (const Edge& edge : edges_) {
-    if (edge.bounds_shadows(travel)) lines.push_back(edge.line);
-  }
-  return lines;
-}
-
-std::vector<Line> Outlines::in_sight(const Vec3& travel) const {
+std::vector<Line> Outlines::in_light(const Vec3& travel, bool creases) const {
   constexpr double smooth = 0.95;  // cosine between neighbours, 18 deg
   std::vector<Line> lines;
   for (const Edge& edge : edges_) {
-    const bool is_crease = edge.normal[0].dot(edge.normal[1]) < smooth;
-    if (is_crease || edge.bounds_shadows(travel)) lines.push_back(edge.line);
+    const bool is_crease = creases && edge.normal[0].dot(edge.normal[1]) < smooth;
+    if (is_crease || edge.facets != 2 ||
+        edge.normal[0].dot(travel) * edge.normal[1].dot(travel) <= 0.0) {
+      lines.push_back(edge.line);
+    }
   }
   return lines;
 }
 
-std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m) {
-  std::vector<std::vector<Line>> cuts;
+BodyShape::BodyShape(const TraceableScene& scene) : facets(scene.scene()), outlines(facets) {
+  const double rounding_m = plane_rounding * scene_diameter_m(scene);
   for (const Facet& facet : facets.all()) cuts.push_back(cuts_through(facet, facets, rounding_m));
-  return cuts;
 }
-
-BodyShape::BodyShape(const TraceableScene& scene)
-    : facets(scene.scene()),
-      outlines(facets),
-      cuts(all_cuts(facets, plane_rounding * scene_diameter_m(scene))) {}
 
 LineGrid::LineGrid(const TraceableScene& scene, const Outlines& outlines, const Vec3& travel)
     : lines_(outlines.in_light(travel)),

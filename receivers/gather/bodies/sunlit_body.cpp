@@ -106,7 +106,7 @@ class SunlitBody::Direction {
   // facets often have the same plane and therefore the same direction.
   std::span<const Line> seen_along(const Vec3& direction) {
     if (!(direction - seen_direction_).isZero(1e-12)) {
-      seen_ = body_.shape_.outlines.in_sight(direction);
+      seen_ = body_.shape_.outlines.in_light(direction, true);
       for (const auto& cuts : body_.shape_.cuts)
         seen_.insert(seen_.end(), cuts.begin(), cuts.end());
       seen_direction_ = direction;
