@@ -34,14 +34,6 @@ double winding(const Scene& scene, const Instance& instance, const Vec3& point_m
   return std::abs(half_angles) / (2.0 * pi);
 }
 
-bool is_opaque(const Scene& scene, const Instance& instance) {
-  const auto lets_through = [](const OpticalSurface& surface) {
-    return std::ranges::any_of(surface.transmitted, [](double part) { return part > 0.0; });
-  };
-  return !lets_through(scene.surfaces[instance.front_surface]) &&
-         !lets_through(scene.surfaces[instance.back_surface]);
-}
-
 // Calls `found` with each closed opaque part and each lamp inside of it.
 template <class Found>
 void find_lamps_inside(const Scene& scene, std::span<const Beam> beams,
@@ -51,7 +43,7 @@ void find_lamps_inside(const Scene& scene, std::span<const Beam> beams,
   for (uint32_t part = 0; part < scene.instances.size(); ++part) {
     const Instance& instance = scene.instances[part];
     const Mesh& mesh = scene.meshes[instance.mesh];
-    if (!mesh.encloses || !is_opaque(scene, instance)) continue;
+    if (!mesh.encloses || scene.transmits(instance)) continue;
     const Eigen::AlignedBox3d box = scene.box_of(instance);
     for (const Beam& beam : beams) {
       const Vec3 at_m = body_from_lab.point(beam.lab_from_emitter.translation_m);

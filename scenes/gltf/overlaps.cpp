@@ -22,13 +22,6 @@ std::optional<bool> Parts::inward(uint32_t part) {
   return entry->second;
 }
 
-bool Parts::transmits(uint32_t part) const {
-  return std::ranges::any_of(std::array{true, false}, [&](bool front) {
-    return std::ranges::any_of(scene_.surface(scene_.instances[part], front).transmitted,
-                               [](double fraction) { return fraction > 0.0; });
-  });
-}
-
 std::optional<PlacedFace> placed(const Scene& scene, const Face& face) {
   const Instance& instance = scene.instances[face.instance];
   const Mesh& mesh = scene.meshes[instance.mesh];

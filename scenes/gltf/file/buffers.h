@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "scenes/gltf/file/fault.h"
-#include "scenes/gltf/file/open.h"
 
 namespace photorque::gltf {
 

@@ -2,23 +2,21 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 
 #include "scenes/gltf/file/document.h"
 
 namespace photorque::gltf {
 
-// Decodes EXT_meshopt_compression (buffer views) and KHR_draco_mesh_compression (primitives), so
+// Decode EXT_meshopt_compression (buffer views) and KHR_draco_mesh_compression (primitives), so
 // that other parts of the reader need not handle them. The decoded bytes become additional buffers
-// of the document, with their own views and accessors. Call it before the typed model is made.
+// of the document, with their own views and accessors. Call both before the typed model is made,
+// views first, because Draco data may lie in one of them.
 //
 // A primitive with Draco data keeps its plain accessors if they have bytes. Otherwise it gets
-// POSITION, TEXCOORD_0 and indices from the data, and no other attribute. Throws InputError for
-// data that cannot be decoded or that contradict their description in the document.
-void decompress(Document* document, MemoryBudget* budget);
-
-// The two decoders; `where` in messages is the extension.
+// POSITION, TEXCOORD_0 and indices from the data, and no other attribute. Throw InputError for data
+// that cannot be decoded or that contradict their description in the document; `where` in messages
+// is the extension.
 void decode_meshopt_views(Document* document, MemoryBudget* budget);
 void decode_draco_primitives(Document* document, MemoryBudget* budget);
 
@@ -26,11 +24,6 @@ void decode_draco_primitives(Document* document, MemoryBudget* budget);
 // InputError for other values.
 uint64_t extension_number(const Document& document, const nlohmann::json& extension,
                           const char* key, const std::string& where);
-
-// Bytes of a buffer. Throws InputError if some of them are missing.
-std::span<const unsigned char> buffer_bytes(const Document& document, uint64_t buffer,
-                                            uint64_t offset, uint64_t length,
-                                            const std::string& where);
 
 // Adds a buffer to the document; returns its index.
 size_t add_buffer(Document* document, std::string bytes);

@@ -50,8 +50,11 @@ Document read_document(const std::string& bytes, const std::string& file, const 
 const nlohmann::json& element_of(const Document& document, const std::string& where,
                                  const nlohmann::json& index, const char* section);
 
-// Bytes of the buffer view `index`; errors as in element_of().
-std::string bytes_of_view(const Document& document, const std::string& where,
-                          const nlohmann::json& index);
+// Bytes of a buffer; valid until a buffer is added. Throws InputError if some of them are missing.
+std::string_view buffer_bytes(const Document& document, uint64_t buffer, uint64_t offset,
+                              uint64_t length, const std::string& where);
+// Bytes of the buffer view `index`; errors as in element_of() and buffer_bytes().
+std::string_view bytes_of_view(const Document& document, const std::string& where,
+                               const nlohmann::json& index);
 
 }  // namespace photorque::gltf
