@@ -149,7 +149,7 @@ int compact(HitBuffer& buffer, Hits::Column<int>& kept) {
 void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer) {
   Hits& hits = buffer.hits;
   const auto& ray = buffer.ray;
-  std::fill_n(hits.depth.begin(), hits.count, static_cast<uint16_t>(depth));
+  hits.depth = depth;
   const bool one_instance = hits.count > 0 && on_one_instance(hits);
   if (one_instance && scene.flat[hits.instance[0]] != 0) {
     const TrianglePlane& plane = scene.plane(hits.instance[0], 0);

@@ -54,7 +54,7 @@ void find_hits(const TraceableScene::Data& scene, const RayList& rays, Coherence
 // row of hit j, or is unchanged if all rows are hits. Returns the number of hits.
 int compact(HitBuffer& buffer, Hits::Column<int>& kept);
 
-// Fills position, cosine, front, sample and depth of every hit, and one_side.
+// Fills depth and one_side, and position, cosine, front and sample of every hit.
 void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer);
 
 }  // namespace photorque

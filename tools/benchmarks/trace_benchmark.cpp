@@ -145,7 +145,7 @@ void sunlight(benchmark::State& state, const Case& which) {
   options.threads = static_cast<int>(state.range(0));
   std::atomic<uint64_t> first_hits = 0;
   options.observe = [&](const HitOrigin&, const Hits& hits) {
-    if (hits.depth[0] == 0) first_hits += static_cast<uint64_t>(hits.count);
+    if (hits.depth == 0) first_hits += static_cast<uint64_t>(hits.count);
   };
   uint64_t rays = 0;
   Estimate received;
