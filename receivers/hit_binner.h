@@ -83,7 +83,7 @@ class HitBinner {
  private:
   // A coordinate in units of cells: slope · position + offset.
   struct CellCoordinate {
-    std::array<double, 3> slope{};
+    Vec3 slope = Vec3::Zero();
     double offset = 0.0;
     double last = 0.0;  // index of the last cell
   };

@@ -67,7 +67,9 @@ void load_planes(const TraceableScene::Data& scene, HitBuffer& buffer) {
     std::array<const double*, 4> rows;
     for (int k = 0; k < 4; ++k) {
       const int hit = std::min(i + k, hits.count - 1);
-      rows[static_cast<size_t>(k)] = scene.plane(hits.instance[hit], hits.triangle[hit]).normal;
+      // The normal and, behind it in memory, the offset.
+      rows[static_cast<size_t>(k)] =
+          scene.plane(hits.instance[hit], hits.triangle[hit]).normal.data();
     }
     transpose_4x4(rows, &buffer.plane[0][i], Hits::rows);
   }

@@ -19,15 +19,9 @@ RayPlacement::RayPlacement(const RigidTransform& body_from_emitter,
   starts_late_ = start_z_m > 0.0;
   start_z_m_ = static_cast<float>(start_z_m);
   landing_z_m_ = static_cast<float>(centre_z_m);
-  const Mat3 rotation = body_from_emitter.rotation.toRotationMatrix();
-  const Vec3 offset_m = body_from_emitter.point(Vec3(0.0, 0.0, start_z_m));
-  for (size_t i = 0; i < 3; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    for (size_t k = 0; k < 3; ++k) {
-      rotation_[i][k] = static_cast<float>(rotation(row, static_cast<Eigen::Index>(k)));
-    }
-    offset_m_[i] = static_cast<float>(offset_m[row] - scene.centre_m[row]);
-  }
+  rotation_ = body_from_emitter.rotation.toRotationMatrix().cast<float>();
+  const Vec3 start_m = body_from_emitter.point(Vec3(0.0, 0.0, start_z_m));
+  offset_m_ = (start_m - scene.centre_m).cast<float>();
 }
 
 // Input and output do not overlap; __restrict lets the compiler vectorise.
@@ -37,8 +31,8 @@ void RayPlacement::place(const RayBlock& __restrict rays, RayColumns& __restrict
   const float start_m = start_z_m_, landing_m = landing_z_m_;
   const float late = starts_late_ ? 1.0f : 0.0f;
   const float ahead = landing_m > 0.0f ? 1.0f : 0.0f;
-  const auto r = rotation_;
-  const auto offset_m = offset_m_;
+  const Eigen::Matrix3f r = rotation_;
+  const Eigen::Vector3f offset_m = offset_m_;
   for (int i = 0; i < ray_block; ++i) {
     const float fx = rays.direction[0][i], fy = rays.direction[1][i], fz = rays.direction[2][i];
     const float ex = rays.origin_m[0][i], ey = rays.origin_m[1][i], ez = rays.origin_m[2][i];
@@ -49,9 +43,9 @@ void RayPlacement::place(const RayBlock& __restrict rays, RayColumns& __restrict
     // For rays that reach the plane, set z exactly, without rounding.
     const float on_plane = (fz > min_z ? 1.0f : 0.0f) * (gap_m > 0.0f ? 1.0f : 0.0f);
     const float sz = (1.0f - on_plane) * (step * fz + (ez - start_m));
-    for (size_t k = 0; k < 3; ++k) {
-      placed[k][i] = r[k][0] * sx + r[k][1] * sy + r[k][2] * sz + offset_m[k];
-      placed[3 + k][i] = r[k][0] * fx + r[k][1] * fy + r[k][2] * fz;
+    for (int k = 0; k < 3; ++k) {
+      placed[k][i] = r(k, 0) * sx + r(k, 1) * sy + r(k, 2) * sz + offset_m[k];
+      placed[3 + k][i] = r(k, 0) * fx + r(k, 1) * fy + r(k, 2) * fz;
     }
     const float reach = ahead * (landing_m - ez) * per_z + (1.0f - ahead);
     landing.x[i] = ahead * ex + reach * fx;
@@ -70,13 +64,6 @@ constexpr int log2_batch = 13;
 // packet.
 uint32_t cell_bits(uint32_t batch) {
   return (static_cast<uint32_t>(std::bit_width(batch)) - 3u) / 2u;
-}
-
-// Interleaves the bits of an 8-bit number with zeros (Morton order).
-constexpr uint32_t spread_bits(uint32_t x) {
-  x = (x | (x << 4)) & 0x0f0fu;
-  x = (x | (x << 2)) & 0x3333u;
-  return (x | (x << 1)) & 0x5555u;
 }
 
 // Grid of cells on the part of the plane where a batch lands.
@@ -104,8 +91,8 @@ void make_keys(const LaunchPlan& plan, const LandingGrid& grid, const Landing& a
   for (int i = 0; i < ray_block; ++i) {
     const float fx = std::min(std::max((at.x[i] - grid.x_low) * grid.x_scale, 0.0f), last);
     const float fy = std::min(std::max((at.y[i] - grid.y_low) * grid.y_scale, 0.0f), last);
-    const uint32_t cell = spread_bits(static_cast<uint32_t>(static_cast<int32_t>(fx))) |
-                          (spread_bits(static_cast<uint32_t>(static_cast<int32_t>(fy))) << 1);
+    const uint32_t cell = with_gaps(static_cast<uint32_t>(static_cast<int32_t>(fx))) |
+                          (with_gaps(static_cast<uint32_t>(static_cast<int32_t>(fy))) << 1);
     const uint32_t octant = (std::bit_cast<uint32_t>(placed[3][i]) >> 31) * step[0] +
                             (std::bit_cast<uint32_t>(placed[4][i]) >> 31) * step[1] +
                             (std::bit_cast<uint32_t>(placed[5][i]) >> 31) * step[2];

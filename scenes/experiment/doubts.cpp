@@ -11,7 +11,6 @@
 namespace photorque {
 namespace {
 
-constexpr size_t max_named = 3;
 constexpr double inside = 0.75;  // winding number, with a margin for rounding
 
 // Winding number of a closed surface about a point: 1 inside, 0 outside, 1/2 on a face. It is the
@@ -76,17 +75,26 @@ bool is_chamber(const Scene& scene, uint32_t part) {
   return scene.instances.size() > 1;
 }
 
-void add_lamps_inside(const Scene& scene, std::span<const Beam> beams,
-                      const RigidTransform& lab_from_body, std::vector<std::string>& lines) {
+}  // namespace
+
+void open_chambers(Scene& scene, std::span<const Beam> beams, const RigidTransform& lab_from_body) {
+  std::set<uint32_t> chambers;
+  find_lamps_inside(scene, beams, lab_from_body, [&](uint32_t part, const Beam&) {
+    if (is_chamber(scene, part)) chambers.insert(scene.instances[part].mesh);
+  });
+  for (const uint32_t mesh : chambers) scene.meshes[mesh].encloses = false;
+}
+
+std::vector<std::string> geometry_warnings(const Scene& scene, std::span<const Beam> beams,
+                                           const RigidTransform& lab_from_body) {
+  std::vector<std::string> lines;
+  constexpr size_t max_named = 3;
   size_t named = 0;
   find_lamps_inside(scene, beams, lab_from_body, [&](uint32_t part, const Beam& beam) {
     if (named++ >= max_named) return;
     lines.push_back("the lamp " + beam.name + " stands inside the closed part " +
                     scene.instances[part].path + ", and its light stays there");
   });
-}
-
-void add_unresolved_parts(const Scene& scene, std::vector<std::string>& lines) {
   // A ray starts at this offset above its surface, as a fraction of the scene's size (see
   // TraceableScene).
   constexpr double offset_of_size = 5e-7, offsets = 20.0;
@@ -103,28 +111,11 @@ void add_unresolved_parts(const Scene& scene, std::vector<std::string>& lines) {
     if (size_m[i] >= least_m) continue;
     if (count++ == 0 || size_m[i] < size_m[smallest]) smallest = i;
   }
-  if (count == 0) return;
+  if (count == 0) return lines;
   lines.push_back(
       printed("%zu part(s) are smaller than %.2g m, which is what single precision resolves in a "
               "scene of this size; the smallest is %s, %.2g m",
               count, least_m, scene.instances[smallest].path.c_str(), size_m[smallest]));
-}
-
-}  // namespace
-
-void open_chambers(Scene& scene, std::span<const Beam> beams, const RigidTransform& lab_from_body) {
-  std::set<uint32_t> chambers;
-  find_lamps_inside(scene, beams, lab_from_body, [&](uint32_t part, const Beam&) {
-    if (is_chamber(scene, part)) chambers.insert(scene.instances[part].mesh);
-  });
-  for (const uint32_t mesh : chambers) scene.meshes[mesh].encloses = false;
-}
-
-std::vector<std::string> geometry_warnings(const Scene& scene, std::span<const Beam> beams,
-                                           const RigidTransform& lab_from_body) {
-  std::vector<std::string> lines;
-  add_lamps_inside(scene, beams, lab_from_body, lines);
-  add_unresolved_parts(scene, lines);
   return lines;
 }
 
