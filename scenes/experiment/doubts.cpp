@@ -1,6 +1,5 @@
 #include "scenes/experiment/doubts.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
