@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <ranges>
 
@@ -10,16 +9,6 @@
 
 namespace photorque {
 namespace {
-
-struct Bounds {
-  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
-  Vec2 high = -Vec2::Constant(std::numeric_limits<double>::infinity());
-
-  void include(const Vec2& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-};
 
 InputError error(const SurfaceGridOptions& options, const std::string& found,
                  const std::string& expected) {
@@ -60,17 +49,17 @@ Vec2 plane_coordinates(const SurfaceGrid& grid, const Vec3& position_body_m) {
 
 void fit_extent(SurfaceGrid& grid, std::span<const SurfaceFace> faces,
                 const SurfaceGridOptions& options) {
-  Bounds bounds;
+  Eigen::AlignedBox2d bounds;
   for (const SurfaceFace& face : faces) {
-    for (const Vec3& corner : face.corner_body_m) bounds.include(plane_coordinates(grid, corner));
+    for (const Vec3& corner : face.corner_body_m) bounds.extend(plane_coordinates(grid, corner));
   }
-  if (((bounds.high - bounds.low).array() <= 0.0).any()) {
+  if ((bounds.sizes().array() <= 0.0).any()) {
     throw error(options, "a surface that is edge-on to the grid", "a surface seen from its front");
   }
-  grid.u_low = bounds.low.x();
-  grid.v_low = bounds.low.y();
-  grid.u_high = bounds.high.x();
-  grid.v_high = bounds.high.y();
+  grid.u_low = bounds.min().x();
+  grid.v_low = bounds.min().y();
+  grid.u_high = bounds.max().x();
+  grid.v_high = bounds.max().y();
 }
 
 void check_texture(const Scene& scene, std::span<const SurfaceFace> faces,

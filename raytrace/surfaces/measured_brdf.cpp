@@ -149,18 +149,14 @@ class BrdfLobe final : public Lobe {
     const double high = part * reflectance_[i + 1], low = (1.0 - part) * reflectance_[i];
     const size_t node = draw.extra(1) * (low + high) < high ? i + 1 : i;
     const Cell cell = choose_cell(node, draw.u);
-    double along = cell.along, around = draw.v;
+    CellPoint point = point_in(cell, cell.along, draw.v);
     constexpr uint64_t most = 256;  // the acceptance is at least 1/4
-    for (uint64_t attempt = 0; attempt < most; ++attempt) {
-      if (attempt > 0) {
-        along = draw.extra(3 * attempt);
-        around = draw.extra(3 * attempt + 1);
-      }
-      const CellPoint point = point_in(cell, along, around);
-      if (draw.extra(3 * attempt + 2) * cell.largest < value_in(node, cell, point))
-        return point.out;
+    for (uint64_t attempt = 1; attempt < most; ++attempt) {
+      if (draw.extra(3 * attempt - 1) * cell.largest < value_in(node, cell, point)) break;
+      const Draw now = draw.attempt(attempt);
+      point = point_in(cell, now.u, now.v);
     }
-    return point_in(cell, along, around).out;
+    return point.out;
   }
 
   Vec3 mean_direction(const Arrival& light) const override {

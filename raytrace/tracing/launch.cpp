@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -76,11 +75,11 @@ struct LandingGrid {
       : bits(cell_bits(batch)) {
     const auto [x_least, x_most] = std::minmax_element(some.x.begin(), some.x.end());
     const auto [y_least, y_most] = std::minmax_element(some.y.begin(), some.y.end());
-    x_low = std::max(*x_least, range.x_low);
-    y_low = std::max(*y_least, range.y_low);
+    x_low = std::max(*x_least, range.min().x());
+    y_low = std::max(*y_least, range.min().y());
     const float side = static_cast<float>(1u << bits);
-    x_scale = side / std::max(std::min(*x_most, range.x_high) - x_low, 1e-30f);
-    y_scale = side / std::max(std::min(*y_most, range.y_high) - y_low, 1e-30f);
+    x_scale = side / std::max(std::min(*x_most, range.max().x()) - x_low, 1e-30f);
+    y_scale = side / std::max(std::min(*y_most, range.max().y()) - y_low, 1e-30f);
   }
 };
 
@@ -123,8 +122,7 @@ void counting_sort(uint32_t key_count, LaunchBuffer& buffer) {
 
 // Statistics of a sample of a beam's rays.
 struct BeamSample {
-  static constexpr float most = std::numeric_limits<float>::max();
-  LandingRange range{most, -most, most, -most};
+  LandingRange range;
   std::array<uint32_t, 3> negative{};     // components of directions in the body frame
   double aperture2 = 0.0, spread2 = 0.0;  // Σ x² + y² of origins, and of directions
   static constexpr uint32_t rays = 4 * sobol_block;
@@ -151,10 +149,7 @@ BeamSample sample_beam(const Emitter& emitter, const std::optional<Targets>& tar
     emit(emitter, targets, samples, rays);
     placement.place(rays, placed, landing);
     for (size_t i = 0; i < ray_block; ++i) {
-      const float x = landing.x[i], y = landing.y[i];
-      LandingRange& range = sample.range;
-      range.x_low = std::min(range.x_low, x), range.x_high = std::max(range.x_high, x);
-      range.y_low = std::min(range.y_low, y), range.y_high = std::max(range.y_high, y);
+      sample.range.extend(Eigen::Vector2f(landing.x[i], landing.y[i]));
       for (size_t k = 0; k < 2; ++k) {
         sample.aperture2 += rays.origin_m[k][i] * rays.origin_m[k][i];
         sample.spread2 += rays.direction[k][i] * rays.direction[k][i];
@@ -193,12 +188,9 @@ LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_e
                                 std::sqrt(sample.spread2) * std::max(centre.z(), 0.0));
   LaunchPlan plan{SobolCells(log2_rays, bits), placement, std::move(targets), sample.range};
   if (centre.z() > 0.0) {  // rays that miss the scene need no order
-    const auto radius = static_cast<float>(scene.radius_m);
-    const auto cx = static_cast<float>(centre.x()), cy = static_cast<float>(centre.y());
-    plan.range.x_low = std::max(plan.range.x_low, cx - radius);
-    plan.range.x_high = std::min(plan.range.x_high, cx + radius);
-    plan.range.y_low = std::max(plan.range.y_low, cy - radius);
-    plan.range.y_high = std::min(plan.range.y_high, cy + radius);
+    const Eigen::Vector2f middle = centre.head<2>().cast<float>();
+    const auto radius = Eigen::Vector2f::Constant(static_cast<float>(scene.radius_m));
+    plan.range.clamp({middle - radius, middle + radius});
   }
   for (size_t k = 0; k < 3; ++k) {
     if (sample.negative[k] == 0 || sample.negative[k] == BeamSample::rays) continue;

@@ -26,9 +26,7 @@ struct Landing {
 };
 
 // A rectangle of that plane.
-struct LandingRange {
-  float x_low, x_high, y_low, y_high;
-};
+using LandingRange = Eigen::AlignedBox2f;
 
 // Moves the start of rays near the scene. Rays start where they cross a plane z = const of the
 // emitter's frame just before the scene. If no such plane has the whole scene behind it, they start

@@ -2,6 +2,7 @@
 // it. For the files of this folder only.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <memory>
@@ -50,7 +51,7 @@ struct BinTile {
   auto operator<=>(const BinTile&) const = default;
   int count() const { return columns * rows; }
   // Two halves of a tile of at least two bins.
-  std::pair<BinTile, BinTile> halves() const;
+  std::array<BinTile, 2> halves() const;
 };
 
 // Divides a grid into squares of at most 32 bins a side, of similar sizes: the items of parallel

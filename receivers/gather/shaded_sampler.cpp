@@ -1,7 +1,6 @@
 #include "receivers/gather/shaded_sampler.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -82,9 +81,7 @@ void Gathering::descend(const BinTile& tile, uint32_t index, std::span<const uin
     sight.shaded.push_back({static_cast<uint32_t>(bin), index});
     return;
   }
-  const auto [low, high] = tile.halves();
-  descend(low, index, occluders, sight);
-  descend(high, index, occluders, sight);
+  for (const BinTile& half : tile.halves()) descend(half, index, occluders, sight);
 }
 
 bool is_gatherable(const Scene& scene, const SurfaceGrid& grid, std::span<const Beam> beams) {

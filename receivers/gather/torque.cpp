@@ -1,11 +1,9 @@
 #include "receivers/gather/gather.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/numerics/interpolation.h"
 #include "receivers/gather/lamp.h"
 #include "receivers/gather/quadrature.h"
 #include "receivers/gather/shaded_sampler.h"
@@ -97,8 +95,7 @@ class OpenTorque {
     }
     if (tile.count() == 1) return add_patches(tile, lamp, tolerance_N_m, torque_N_m, bound_N_m);
     size_t open = 0;
-    const auto [low, high] = tile.halves();
-    for (const BinTile& half : {low, high}) {
+    for (const BinTile& half : tile.halves()) {
       const Ball half_ball = plane_.ball_of(half);
       if (!lamp.misses(half_ball)) open += add(half, half_ball, lamp, torque_N_m, bound_N_m);
     }

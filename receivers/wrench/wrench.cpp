@@ -111,10 +111,6 @@ WrenchEstimate WrenchReceiver::direct(const BinSums& sums) const {
   return estimate(sums, [&](size_t group) { return group < part_names_.size(); });
 }
 
-WrenchEstimate WrenchReceiver::bounced(const BinSums& sums) const {
-  return estimate(sums, [&](size_t group) { return group >= part_names_.size(); });
-}
-
 Product WrenchReceiver::product(const BinSums& sums) const {
   std::vector<WrenchEstimate> wrenches = by_part(sums);
   std::vector<std::string> names = part_names_;

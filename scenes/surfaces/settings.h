@@ -27,15 +27,10 @@ using SurfaceFiles = std::function<std::optional<std::string>(const std::string&
 //   all of the first four given   the sum is checked to 1e-9;
 //   one left out                  it is the remainder;
 //   more left out                 they are zero, if the others sum to 1; else an error.
-// The fractions returned sum to 1 to rounding. Further keys, all optional:
-//   roughness            (0, 1], as in glTF: the specular fraction leaves by rough_mirror() of
-//                        raytrace/surfaces/mirrors.h
-//   slope_error_mrad     (0, 200], or two of them: by slope_error() there, with slope_error_shape
-//                        and, for two, slope_error_axis (body axes)
-//   refractive_index     [1, 10]: glass in front, glass.h; the fractions are those behind it.
-//                        Beneath glass either diffuse, specular or transmittance is positive,
-//                        roughness goes with diffuse alone, and slope_error_mrad and
-//                        retroreflectance with none
+// The fractions returned sum to 1 to rounding. Further keys state the lobe of the specular fraction
+// (raytrace/surfaces/mirrors.h) or glass in front (glass.h), behind which the fractions count.
+// Beneath glass either diffuse, specular or transmittance is positive, roughness goes with diffuse
+// alone, and slope_error_mrad and retroreflectance with none. sheet_keys() lists all keys.
 // Other keys are left to the caller. Throws InputError with the table's file, line and key.
 OpticalSurface read_surface(const Settings& table, int bands, std::string name);
 
@@ -43,10 +38,8 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name);
 // triangle run clockwise, and with heat radiation of both sides. `reemitted` (default 0) is the
 // fraction of the absorbed power that leaves at once. It is divided between the sides in proportion
 // to `emissivity_front` and `emissivity_back` (default 1). Instead of fractions a side may have
-//   brdf_file            a table of measured scattering, brdf_file.h, from `files`
-//   brdf_scale           (1) a factor on it, > 0, one number or one per band
-// Throws InputError if the file is missing or invalid, or if the surface would reflect more than it
-// receives.
+// `brdf_file`, a table of measured scattering (brdf_file.h) from `files`. Throws InputError if the
+// file is missing or invalid, or if the surface would reflect more than it receives.
 SheetOptics read_sheet(const Settings& table, int bands, const std::string& name,
                        const SurfaceFiles& files = {});
 

@@ -15,14 +15,10 @@ using EdgeKey = std::array<double, 7>;
 
 EdgeKey key_of(uint32_t instance, const Vec3& a, const Vec3& b) {
   const bool turned = std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3);
-  const Vec3 &first = turned ? b : a, &second = turned ? a : b;
-  return {static_cast<double>(instance),
-          first.x(),
-          first.y(),
-          first.z(),
-          second.x(),
-          second.y(),
-          second.z()};
+  EdgeKey key{static_cast<double>(instance)};
+  std::copy_n((turned ? b : a).data(), 3, &key[1]);
+  std::copy_n((turned ? a : b).data(), 3, &key[4]);
+  return key;
 }
 
 // Lines at which other facets cut through a facet.
