@@ -1,11 +1,10 @@
-#include "scenes/experiment/doubts.h"
-
 #include <array>
 #include <cmath>
 #include <set>
 
 #include "core/constants.h"
 #include "core/text/format.h"
+#include "scenes/experiment/experiment.h"
 
 namespace photorque {
 namespace {

@@ -10,7 +10,6 @@
 #include "core/settings/files.h"
 #include "core/text/format.h"
 #include "receivers/kind.h"
-#include "scenes/experiment/doubts.h"
 #include "scenes/experiment/keys.h"
 #include "scenes/gltf/coincident.h"
 #include "scenes/gltf/lights.h"

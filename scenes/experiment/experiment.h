@@ -158,4 +158,13 @@ struct Experiment {
 // a missing node, any key that was not read, and textures without a `picture` reader.
 Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture = {});
 
+// Marks closed opaque parts that contain a lamp and all other parts, such as a vacuum chamber, as
+// not enclosing: their inner sides are meant to be lit.
+void open_chambers(Scene& scene, std::span<const Beam> beams, const RigidTransform& lab_from_body);
+
+// Warnings, one line each: lamps whose centre is inside a closed opaque part, at this attitude;
+// parts that are too small, compared with the scene, for the single precision of ray casting.
+std::vector<std::string> geometry_warnings(const Scene& scene, std::span<const Beam> beams,
+                                           const RigidTransform& lab_from_body);
+
 }  // namespace photorque

@@ -6,11 +6,8 @@
 
 #include "core/constants.h"
 #include "core/text/format.h"
-#include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/glass.h"
-#include "raytrace/surfaces/measured_brdf.h"
 #include "raytrace/surfaces/mirrors.h"
-#include "scenes/surfaces/brdf_file.h"
 
 namespace photorque {
 namespace {

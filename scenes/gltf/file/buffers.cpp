@@ -1,13 +1,8 @@
-#include "scenes/gltf/file/buffers.h"
-
-#include <nlohmann/json.hpp>
-
-#include <array>
 #include <filesystem>
 
 #include "core/provenance.h"
 #include "core/text/parse.h"
-#include "scenes/gltf/file/fault.h"
+#include "scenes/gltf/file/document.h"
 
 namespace photorque::gltf {
 namespace {

@@ -1,18 +1,9 @@
 #include "scenes/gltf/file/document.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "core/errors.h"
 #include "core/little_endian.h"
 #include "core/text/parse.h"
-#include "scenes/gltf/file/compression.h"
-#include "scenes/gltf/file/fault.h"
 
 namespace photorque::gltf {
 

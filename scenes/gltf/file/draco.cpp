@@ -5,11 +5,10 @@
 #include <cstring>
 #include <map>
 #include <new>
-#include <optional>
 #include <stdexcept>
 #include <tuple>
 
-#include "scenes/gltf/file/compression.h"
+#include "scenes/gltf/file/document.h"
 
 namespace photorque::gltf {
 namespace {

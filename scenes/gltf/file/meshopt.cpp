@@ -2,8 +2,7 @@
 // extensions/2.0/Vendor/EXT_meshopt_compression.
 #include <meshoptimizer.h>
 
-#include "scenes/gltf/file/compression.h"
-#include "scenes/gltf/file/fault.h"
+#include "scenes/gltf/file/document.h"
 
 namespace photorque::gltf {
 namespace {
