@@ -128,7 +128,6 @@ inline void add_hit(Hits& hits, const HitMaker& hit) {
   hits.instance.at(i) = hit.instance;
   hits.triangle[i] = hit.triangle;
   hits.front[i] = hit.front ? 1 : 0;
-  hits.depth[i] = 0;
   hits.cosine[i] = hit.cosine;
   hits.bands = static_cast<int>(hit.incident_W.size());
   for (size_t band = 0; band < hit.incident_W.size(); ++band) {

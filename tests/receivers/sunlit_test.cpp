@@ -231,7 +231,12 @@ Eigen::Array2d against_rays(const TraceableScene& known, const TraceableScene& t
       }
     };
     add(receiver.direct(result.sums[0]), own.direct, false);
-    add(receiver.bounced(result.sums[0]), bounced, true);
+    BinSums later = result.sums[0];
+    for (int r = 0; r < later.replicates; ++r) {
+      const auto first = later.sums.begin() + r * static_cast<std::ptrdiff_t>(later.bins);
+      std::fill_n(first, receiver.direct_entries(), 0.0);
+    }
+    add(receiver.total(later), bounced, true);
   }
   return squares;
 }

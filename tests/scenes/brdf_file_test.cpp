@@ -1,6 +1,4 @@
 // Tables of measured scattering, from text to the surface of a material.
-#include "scenes/surfaces/brdf_file.h"
-
 #include "core/constants.h"
 #include "gltf_test_model.h"
 #include "raytrace/surfaces/bsdf.h"

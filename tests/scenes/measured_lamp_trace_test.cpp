@@ -57,13 +57,14 @@ TEST(IesLamp, IsFoundBesideTheExperimentAndHashedAmongItsInputs) {
                              "\"\n[[source]]\nkind = \"ies\"\nfile = \"lambert.ies\"\n"
                              "power_W = 3\nwavelength_nm = 730\nposition_m = [0, 0, 2]\n"
                              "direction = [0, 0, -1]\n");
-  const Experiment experiment = read_experiment(toml);
+  const Experiment experiment = resolve_experiment(read_experiment_file(toml));
   ASSERT_EQ(experiment.beams.size(), 1u);
   EXPECT_EQ(experiment.beams[0].emitter->power_W(), 3.0);
   const std::pair<std::string, std::string> input{"lambert.ies", content_hash(read_file(file))};
   EXPECT_NE(std::find(experiment.inputs.begin(), experiment.inputs.end(), input),
             experiment.inputs.end());
-  EXPECT_THROW(read_experiment(toml, std::vector<std::string>{"source[0].file=other.ies"}),
+  EXPECT_THROW(resolve_experiment(read_experiment_file(
+                   toml, std::vector<std::string>{"source[0].file=other.ies"})),
                InputError);
 }
 

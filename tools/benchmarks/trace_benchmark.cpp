@@ -145,7 +145,7 @@ void sunlight(benchmark::State& state, const Case& which) {
   options.threads = static_cast<int>(state.range(0));
   std::atomic<uint64_t> first_hits = 0;
   options.observe = [&](const HitOrigin&, const Hits& hits) {
-    if (hits.depth[0] == 0) first_hits += static_cast<uint64_t>(hits.count);
+    if (hits.depth == 0) first_hits += static_cast<uint64_t>(hits.count);
   };
   uint64_t rays = 0;
   Estimate received;
@@ -230,7 +230,7 @@ void bare_embree(benchmark::State& state, const Case& which, bool sorts) {
   uint64_t rays = 0;
   for (auto _ : state) {
     parallel_for(repeats * batches.size(), threads, [&](size_t item) {
-      const auto buffer = std::make_unique<HitBuffer>();
+      const auto buffer = std::make_unique<HitBuffer>(1);
       const std::span<const Ray> batch = batches[item % batches.size()];
       std::vector<uint16_t> key, order;
       if (sorts) sort_by_landing(batch, key, order);
@@ -320,8 +320,8 @@ void shadow_rays(benchmark::State& state, const Case& which, double disc_radius_
 }
 
 void stasis_30_deg_gather(benchmark::State& state) {
-  const Experiment stasis =
-      read_experiment(std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml");
+  const Experiment stasis = resolve_experiment(
+      read_experiment_file(std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml"));
   const TraceableScene scene(stasis.scene);
   for (const NamedReceiver& named : stasis.receivers) {
     if (!named.flux_map) continue;

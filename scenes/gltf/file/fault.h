@@ -3,10 +3,20 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "core/errors.h"
+
+namespace photorque {
+
+// Returns the bytes of a relative path (percent-decoded), or nothing. Throws InputError if the
+// path, or a link on it, leaves the model's folder and this is not allowed.
+using GltfOpen = std::function<std::optional<std::string>(const std::string& relative_path)>;
+
+}  // namespace photorque
 
 namespace photorque::gltf {
 
@@ -64,6 +74,8 @@ void check_schema(const nlohmann::json& document, const std::string& file);
 
 // The member of an object; null if there is none or the value is no object.
 const nlohmann::json* member_of(const nlohmann::json& value, const char* key);
+// An extension of an object; null if there is none.
+const nlohmann::json* extension_of(const nlohmann::json& value, const char* name);
 
 // Short description of a value for messages: "-3", "\"abc\"", "an array of 2".
 std::string describe_json(const nlohmann::json& value);
