@@ -182,7 +182,7 @@ Json stage_content(const SceneStage& stage, const Product& product, const PageLi
   const std::vector<StagePart> parts = shown_parts(stage.parts, limits.triangles, boxes);
   const auto painting = [&](const Painting& one) { return painting_json(one, product); };
   const auto rays = [](const std::vector<float>& ends) { return packed(ends); };
-  const auto body = [](const StageBody& one) { return Json{{"name", clean_text(one.name)}}; };
+  const auto body = [](const std::string& name) { return Json{{"name", clean_text(name)}}; };
   const auto figure = [](const StageFigure& one) {
     return Json{{"label", clean_text(one.label)}, {"unit", clean_text(one.unit)}};
   };

@@ -1,9 +1,7 @@
 #include "images/drawing/plot.h"
 
-#include <sstream>
-
 #include "core/errors.h"
-#include "images/drawing/page_layout.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {
@@ -99,8 +97,9 @@ std::optional<TextStyle> style_of_words(const std::vector<Plot::Curve>& curves, 
                                         TextStyle style) {
   double widest = 0.0;
   for (const Plot::Curve& curve : curves) {
-    std::istringstream words(curve.label);
-    for (std::string word; words >> word;) widest = std::max(widest, text_width(word, style));
+    for (const std::string_view word : words_of(curve.label)) {
+      widest = std::max(widest, text_width(std::string(word), style));
+    }
   }
   constexpr double rounding = 0.99;
   if (widest > rounding * room) style.size *= rounding * room / widest;
@@ -234,34 +233,6 @@ std::string caption_of(const Plot& plot) {
   return any ? "Bars and bands: ±1 standard error." : "";
 }
 
-// A plot with title and caption around it.
-struct PlotPage {
-  Plot plot;
-  double width = 0.0;
-  PageText text;
-  PlotLayout layout;
-  double body_height() const { return layout.bottom - text.body_top(); }
-  double height() const { return std::ceil(text.page_height(body_height())); }
-};
-
-PlotPage page_of(const Plot& plot, const Provenance& provenance, PictureStyle style) {
-  require_consistent(plot);
-  PlotPage page;
-  page.plot = with_readable_time_unit(plot);
-  page.width = std::round(page_width * page_scale(style));
-  page.text = page_text(plot.title, caption_of(plot), provenance, page.width, style);
-  page.layout = plot_layout(page.plot, {.left = page_margin,
-                                        .right = page.width - page_margin,
-                                        .top = std::ceil(page.text.body_top()),
-                                        .scale = page_scale(style)});
-  return page;
-}
-
-void draw_page(Canvas& canvas, const PlotPage& page) {
-  draw_plot(canvas, page.plot, page.layout);
-  draw_page_text(canvas, page.text, page.body_height());
-}
-
 }  // namespace
 
 void require_consistent(const Plot& plot) {
@@ -391,26 +362,24 @@ double seconds_of_unit(const Plot& plot) {
   return 1.0;
 }
 
-Picture plot_picture(const Plot& plot, const Provenance& provenance, PictureStyle style) {
-  const PlotPage page = page_of(plot, provenance, style);
-  Canvas canvas = Canvas::of_pixels(page.width, page.height(), pixels_per_point(style));
-  draw_page(canvas, page);
-  return canvas.finish_pixels();
-}
-
-std::string svg_of(const Plot& plot, const Provenance& provenance, PictureStyle style) {
-  const PlotPage page = page_of(plot, provenance, style);
-  Canvas canvas = Canvas::of_svg(page.width, page.height(), Canvas::Letters::text);
-  draw_page(canvas, page);
-  return canvas.finish_file();
-}
-
-std::string pdf_of(const Plot& plot, const Provenance& provenance, const PdfText& text,
-                   PictureStyle style) {
-  const PlotPage page = page_of(plot, provenance, style);
-  Canvas canvas = Canvas::of_pdf(page.width, page.height(), text);
-  draw_page(canvas, page);
-  return canvas.finish_file();
+DrawnPage page_of(const Plot& of, const Provenance& provenance, PictureStyle style) {
+  require_consistent(of);
+  const Plot plot = with_readable_time_unit(of);
+  const double width = std::round(page_width * page_scale(style));
+  const PageText text = page_text(plot.title, caption_of(plot), provenance, width, style);
+  const PlotLayout layout = plot_layout(plot, {.left = page_margin,
+                                               .right = width - page_margin,
+                                               .top = std::ceil(text.body_top()),
+                                               .scale = page_scale(style)});
+  const double body_height = layout.bottom - text.body_top();
+  return {width,
+          std::ceil(text.page_height(body_height)),
+          style,
+          {},
+          [plot, layout, text, body_height](Canvas& canvas, double) {
+            draw_plot(canvas, plot, layout);
+            draw_page_text(canvas, text, body_height);
+          }};
 }
 
 std::string plot_html(const Plot& of) {

@@ -197,13 +197,13 @@ SceneView lit_square(int size) {
 }
 
 TEST(ScenePicture, ShowsTheViewAtItsOwnPixels) {
-  SceneLabels labels{.title = "Square", .caption = "", .scale_end_W_m2 = 800.0};
+  SceneLabels labels{.title = "Square", .caption = ""};
   const Picture picture = scene_picture(lit_square(200), labels, sample_provenance());
-  const auto half = rgb_bytes(viridis()(0.5));
+  const auto brightest = rgb_bytes(viridis()(1.0));
   int pixels = 0;
   for (int row = 0; row < picture.height; ++row) {
     for (int column = 0; column < picture.width; ++column) {
-      pixels += picture.pixel(column, row) == half ? 1 : 0;
+      pixels += picture.pixel(column, row) == brightest ? 1 : 0;
     }
   }
   // 99 columns by 149 rows, less the drawn outline of one pixel and plus a line in the colour bar.

@@ -205,8 +205,8 @@ class MotionStage {
     factor_ = enlargement(largest_rad, noise_rad);
     in_degrees_ = largest_rad > 2.0 * degree_rad;
     const std::string times = factor_ > 1.0 ? ", difference × " + factor_text() : "";
-    stage_.bodies = {{"measured"}, {"nominal" + times}};
-    if (found_) stage_.bodies.push_back({"found" + times});
+    stage_.bodies = {"measured", "nominal" + times};
+    if (found_) stage_.bodies.push_back("found" + times);
     add_difference_arrows(in_degrees_ ? "deg" : "arcsec", largest_rad / unit_rad());
     stage_.figures = {{"tilt, measured", "deg"}, {"heading, measured", "deg"}};
     for (const char axis : {'x', 'y', 'z'}) {
@@ -233,7 +233,7 @@ class MotionStage {
         if (found_) largest = std::max(largest, nearly_largest(absolute(channel->residual_after)));
       }
     }
-    stage_.bodies = {{"platform"}};
+    stage_.bodies = {"platform"};
     add_difference_arrows("rad/s", largest);
     stage_.arrows.push_back({"measured rate", "rad/s", StageArrow::Kind::turn});
     add_sentence(stage_.remark,
