@@ -211,7 +211,9 @@ std::string map_html(const Map& map) {
   require_consistent(map);
   constexpr double width = 0.5 * html_chart_width, top = 14.0, gap = 14.0;
   const ColourScale scale = colour_scale(map);
-  MapLayout layout{.is_page = false, .grid = grid_size(map)};
+  MapLayout layout;
+  layout.is_page = false;
+  layout.grid = grid_size(map);
   PageBox& grid = layout.grid;
   // The bar's width does not depend on its height.
   const double bar_width = colour_bar(scale, map.unit, grid.height).width();
