@@ -181,7 +181,6 @@ Json stage_content(const SceneStage& stage, const Product& product, const PageLi
   }
   const std::vector<StagePart> parts = shown_parts(stage.parts, limits.triangles, boxes);
   const auto painting = [&](const Painting& one) { return painting_json(one, product); };
-  const auto rays = [](const std::vector<float>& ends) { return packed(ends); };
   const auto body = [](const std::string& name) { return Json{{"name", clean_text(name)}}; };
   const auto figure = [](const StageFigure& one) {
     return Json{{"label", clean_text(one.label)}, {"unit", clean_text(one.unit)}};
@@ -201,7 +200,7 @@ Json stage_content(const SceneStage& stage, const Product& product, const PageLi
           {"figures", list_of(stage.figures, figure)},
           {"axes", list_of(stage.axes, axis_json)},
           {"states", states_json(stage)},
-          {"rays", list_of(stage.rays_of_light_lab_m, rays)},
+          {"rays", list_of(stage.rays_of_light_lab_m, packed<float>)},
           {"light_of_state", stage.light_of_state},
           {"camera",
            {{"position", vector_json(stage.camera.position_lab_m)},

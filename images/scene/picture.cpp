@@ -85,7 +85,7 @@ Picture scene_picture(const SceneView& view, const SceneLabels& labels,
                       const Provenance& provenance) {
   require_consistent(view);
   const std::optional<double> largest = largest_irradiance_W_m2(view);
-  const ColourScale scale = colour_scale(0.0, largest.value_or(0.0), false);
+  const ColourScale scale = colour_scale({0.0, largest.value_or(0.0)}, false);
   const double per_point = pixels_per_point(PictureStyle::page);
   PageBox image{page_margin, 0.0, view.width / per_point, view.height / per_point};
   const double bar_height = std::max(80.0, std::min(300.0, image.height - 60.0));

@@ -17,11 +17,6 @@ namespace photorque {
 RunPage page_of(const RunResult& result, const PageHead& head,
                 const std::vector<std::string>& headlines);
 
-// Power balance of a run: from the array's table "losses" if there is one, otherwise from the lamps
-// to the parts with flux maps.
-std::vector<PowerStage> power_stages(const OpticalRun& run, const OpticalResult& light,
-                                     const Product& product);
-
 // The file "page.html"; its content is made when it is written.
 RunFile page_file(RunPage page);
 
