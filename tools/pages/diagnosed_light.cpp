@@ -122,9 +122,7 @@ void show_runs(const std::vector<RecordingSeries>& runs, const OpticalRun& optic
     stage.figures.push_back({"nominal model", channel.unit});
     if (found) stage.figures.push_back({"improved model", channel.unit});
   }
-  const size_t count = std::min(most_states, time_s.size());
-  for (size_t k = 0; k < count; ++k) {
-    const size_t i = count == 1 ? 0 : k * (time_s.size() - 1) / (count - 1);
+  for (const size_t i : even_indices(time_s.size(), most_states)) {
     if (!axis.values.empty() && !(time_s[i] > axis.values.back())) continue;
     axis.values.push_back(time_s[i]);
     attitudes.push_back(first.attitude.measured[i]);

@@ -56,10 +56,8 @@ std::vector<double> instants(const std::vector<RecordingSeries>& recordings,
   std::vector<double> at;
   if (recordings.size() == 1) {
     const std::vector<double>& own = own_instants(recordings.front());
-    const size_t count = std::min(most, own.size());
-    for (size_t i = 0; i < count; ++i) {
-      const double time_s = own[count == 1 ? 0 : i * (own.size() - 1) / (count - 1)];
-      if (at.empty() || time_s > at.back()) at.push_back(time_s);
+    for (const size_t i : even_indices(own.size(), most)) {
+      if (at.empty() || own[i] > at.back()) at.push_back(own[i]);
     }
     return at;
   }
@@ -101,21 +99,6 @@ double enlargement(double largest_rad, double noise_rad) {
     if (next <= most) factor = next;
   }
   return factor;
-}
-
-// Rotation between measurement and a model, in body axes, with its error.
-struct Difference {
-  Vec3 body = Vec3::Zero(), error_body = Vec3::Zero();
-};
-
-Difference difference_of(const Quat& lab_from_body, const Vec3& off_lab, const Vec3& error_lab,
-                         double unit) {
-  const Mat3 body_from_lab = lab_from_body.conjugate().toRotationMatrix();
-  Difference d;
-  if (!off_lab.allFinite()) return d;
-  d.body = body_from_lab * off_lab / unit;
-  d.error_body = (body_from_lab.cwiseAbs2() * error_lab.cwiseAbs2()).cwiseSqrt() / unit;
-  return d;
 }
 
 void add_attitude_figures(const RecordingSeries& recording, const Quat& q, double time_s,
@@ -262,15 +245,20 @@ class MotionStage {
     const AttitudeSeries& a = recording.attitude;
     const size_t i = nearest_instant(a.time_s, time_s);
     const Quat& q = a.measured[i];
+    const Mat3 body_from_lab = q.conjugate().toRotationMatrix();
     StageState state;
     state.lab_from_body.push_back(q);
     const auto add = [&](const std::vector<Vec3>& off) {
       const auto [off_rad, error_rad] = mean_about(a, off, i);
       const Vec3 shown_rad = off_rad.allFinite() ? Vec3(factor_ * off_rad) : Vec3::Zero();
       state.lab_from_body.push_back((turn_by(-shown_rad) * q).normalized());
-      const Difference d = difference_of(q, off_rad, error_rad, unit_rad());
-      state.arrow_body.push_back(d.body);
-      state.arrow_error_body.push_back(d.error_body);
+      const bool is_known = off_rad.allFinite();
+      state.arrow_body.push_back(is_known ? Vec3(body_from_lab * off_rad / unit_rad())
+                                          : Vec3::Zero());
+      state.arrow_error_body.push_back(
+          is_known
+              ? Vec3((body_from_lab.cwiseAbs2() * error_rad.cwiseAbs2()).cwiseSqrt() / unit_rad())
+              : Vec3::Zero());
     };
     add(a.off_before_rad);
     if (found_) add(a.off_after_rad);
@@ -308,6 +296,15 @@ class MotionStage {
 };
 
 }  // namespace
+
+std::vector<size_t> even_indices(size_t count, size_t most) {
+  const size_t shown = std::min(count, most);
+  std::vector<size_t> indices;
+  for (size_t i = 0; i < shown; ++i) {
+    indices.push_back(shown == 1 ? 0 : i * (count - 1) / (shown - 1));
+  }
+  return indices;
+}
 
 size_t nearest_instant(const std::vector<double>& time_s, double at_s) {
   const auto after = std::ranges::lower_bound(time_s, at_s);

@@ -20,6 +20,8 @@ RunPage page_of(const RunResult& result, const PageHead& head,
 // The file "page.html"; its content is made when it is written.
 RunFile page_file(RunPage page);
 
+// At most `most` of `count` indices, evenly distributed, with the first and the last.
+std::vector<size_t> even_indices(size_t count, size_t most);
 // Index of the value nearest to a time in a rising list.
 size_t nearest_instant(const std::vector<double>& time_s, double at_s);
 void add_sentence(std::string& text, const std::string& sentence);
