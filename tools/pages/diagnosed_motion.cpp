@@ -25,22 +25,6 @@ std::string rate_channel(int axis) {
   return std::string("gyro_") + "xyz"[axis] + "_rad_s";
 }
 
-// Start and end of a recording.
-struct Span {
-  double from_s = 0.0, to_s = 0.0;
-};
-
-Span span_of(const RecordingSeries& recording) {
-  Span span{1e300, -1e300};
-  const auto extend = [&](const std::vector<double>& time_s) {
-    if (time_s.empty()) return;
-    span = {std::min(span.from_s, time_s.front()), std::max(span.to_s, time_s.back())};
-  };
-  extend(recording.attitude.time_s);
-  for (const ChannelSeries& channel : recording.channels) extend(channel.time_s);
-  return span;
-}
-
 // Instants of the attitude; without attitude, those of the first channel with readings.
 const std::vector<double>& own_instants(const RecordingSeries& recording) {
   if (!recording.attitude.time_s.empty()) return recording.attitude.time_s;
@@ -51,7 +35,7 @@ const std::vector<double>& own_instants(const RecordingSeries& recording) {
 // Instants of the slider: those of a single recording, or equally spaced over the longest of
 // several recordings, each from its start.
 std::vector<double> instants(const std::vector<RecordingSeries>& recordings,
-                             const std::vector<Span>& spans) {
+                             const std::vector<Where::Interval>& spans) {
   const size_t most = std::clamp<size_t>(most_diagnosed_states / recordings.size(), 100, 1500);
   std::vector<double> at;
   if (recordings.size() == 1) {
@@ -62,7 +46,7 @@ std::vector<double> instants(const std::vector<RecordingSeries>& recordings,
     return at;
   }
   double longest_s = 0.0;
-  for (const Span& span : spans) longest_s = std::max(longest_s, span.to_s - span.from_s);
+  for (const auto& [from, to] : spans) longest_s = std::max(longest_s, to - from);
   for (size_t i = 0; i < most; ++i) {
     at.push_back(longest_s * static_cast<double>(i) / static_cast<double>(most - 1));
   }
@@ -158,7 +142,7 @@ class MotionStage {
     });
   }
 
-  const std::vector<Span>& spans() const { return spans_; }
+  const std::vector<Where::Interval>& spans() const { return spans_; }
 
   void fill() {
     stage_.paintings.clear();
@@ -170,7 +154,7 @@ class MotionStage {
     const bool several = recordings_.size() > 1;
     for (size_t r = 0; r < recordings_.size(); ++r) {
       for (const double time_s : at) {
-        const double own_s = several ? std::min(spans_[r].from_s + time_s, spans_[r].to_s) : time_s;
+        const double own_s = several ? std::min(spans_[r].from + time_s, spans_[r].to) : time_s;
         stage_.states.push_back(has_attitude_ ? attitude_state(recordings_[r], own_s)
                                               : rate_state(recordings_[r], own_s));
       }
@@ -290,7 +274,7 @@ class MotionStage {
   const std::vector<RecordingSeries>& recordings_;
   bool found_;
   SceneStage& stage_;
-  std::vector<Span> spans_;
+  std::vector<Where::Interval> spans_;
   bool has_attitude_ = false, in_degrees_ = false;
   double factor_ = 1.0;
 };
@@ -304,6 +288,17 @@ std::vector<size_t> even_indices(size_t count, size_t most) {
     indices.push_back(shown == 1 ? 0 : i * (count - 1) / (shown - 1));
   }
   return indices;
+}
+
+Where::Interval span_of(const RecordingSeries& recording) {
+  Where::Interval span{1e300, -1e300};
+  const auto extend = [&](const std::vector<double>& time_s) {
+    if (time_s.empty()) return;
+    span = {std::min(span.from, time_s.front()), std::max(span.to, time_s.back())};
+  };
+  extend(recording.attitude.time_s);
+  for (const ChannelSeries& channel : recording.channels) extend(channel.time_s);
+  return span;
 }
 
 size_t nearest_instant(const std::vector<double>& time_s, double at_s) {
@@ -349,8 +344,8 @@ void show_motion(const std::vector<RecordingSeries>& recordings, bool something_
                  SceneStage stage, RunPage& page) {
   std::vector<RecordingSeries> drawn;
   for (const RecordingSeries& recording : recordings) {
-    const Span span = span_of(recording);
-    if (span.from_s < span.to_s) drawn.push_back(recording);
+    const Where::Interval span = span_of(recording);
+    if (span.from < span.to) drawn.push_back(recording);
   }
   if (drawn.empty()) return;
   MotionStage motion(drawn, something_was_found, stage);
@@ -361,7 +356,7 @@ void show_motion(const std::vector<RecordingSeries>& recordings, bool something_
     return;
   }
   for (size_t r = 0; r < drawn.size(); ++r) {
-    PlotCursor cursor{"", 0, 1.0, motion.spans()[r].from_s};
+    PlotCursor cursor{"", 0, 1.0, motion.spans()[r].from};
     cursor.only_at = {1, static_cast<double>(r + 1)};
     add_curves(drawn[r], "_of_recording_" + std::to_string(r + 1), cursor, page);
   }

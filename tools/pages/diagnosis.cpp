@@ -50,27 +50,12 @@ void append_recording(RecordingSeries& to, const RecordingSeries& from) {
   append_values(to.light->lab_from_body, from.light->lab_from_body);
 }
 
-double first_time_s(const RecordingSeries& recording) {
-  for (const ChannelSeries& c : recording.channels) {
-    if (!c.time_s.empty()) return c.time_s.front();
-  }
-  return 0.0;
-}
-
-double last_time_s(const RecordingSeries& recording) {
-  double last = -1e300;
-  for (const ChannelSeries& c : recording.channels) {
-    if (!c.time_s.empty()) last = std::max(last, c.time_s.back());
-  }
-  return last;
-}
-
 // Whether `held` is the held-out part of `recording`.
 bool is_rest_of(const RecordingSeries& held, const RecordingSeries& recording) {
   return held.is_held_out && !recording.is_held_out && held.recording == recording.recording &&
          held.channels.size() == recording.channels.size() && recording.held_out_s.empty() &&
          held.light.has_value() == recording.light.has_value() &&
-         (held.light || first_time_s(held) > last_time_s(recording));
+         (held.light || span_of(held).from > span_of(recording).to);
 }
 
 // The optical run of an experiment with a scene and lamps; null otherwise.

@@ -22,6 +22,8 @@ RunFile page_file(RunPage page);
 
 // At most `most` of `count` indices, evenly distributed, with the first and the last.
 std::vector<size_t> even_indices(size_t count, size_t most);
+// Start and end of a recording [s]; without times the end is before the start.
+Where::Interval span_of(const RecordingSeries& recording);
 // Index of the value nearest to a time in a rising list.
 size_t nearest_instant(const std::vector<double>& time_s, double at_s);
 void add_sentence(std::string& text, const std::string& sentence);
