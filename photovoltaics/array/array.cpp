@@ -89,8 +89,12 @@ CellLight PreparedArray::light(const LightBins& bins) const {
 
 CellCover cover_of(const ArrayDesign& design, const ArrayLight& light) {
   if (design.places) return {light, design.places->parts};
-  return {light,
-          cell_rectangles(light, design.columns, design.rows, design.gap_m, design.margin_m)};
+  std::vector<std::vector<BinPart>> parts;
+  for (const CellRectangle& cell :
+       cell_rectangles(light.grid, design.columns, design.rows, design.gap_m, design.margin_m)) {
+    parts.push_back(parts_of_rectangle(cell, light.grid));
+  }
+  return {light, parts};
 }
 
 // Prepares the array for its light; the tables of the cells are not computed.

@@ -199,15 +199,8 @@ CellPlaces places_from_mesh(const Scene& scene, const SurfaceGrid& grid) {
 
 CellPlaces places_from_rectangles(std::span<const CellRectangle> cells, const SurfaceGrid& grid) {
   CellPlaces places{{}, {}, static_cast<int>(cells.size()), 1};
-  ArrayLight dimensions;
-  dimensions.width = grid.width;
-  dimensions.height = grid.height;
-  dimensions.u_low = grid.u_low;
-  dimensions.u_high = grid.u_high;
-  dimensions.v_low = grid.v_low;
-  dimensions.v_high = grid.v_high;
   for (const CellRectangle& cell : cells) {
-    places.parts.push_back(parts_of_rectangle(cell, dimensions));
+    places.parts.push_back(parts_of_rectangle(cell, grid));
     places.centres.emplace_back(std::midpoint(cell.u_low, cell.u_high),
                                 std::midpoint(cell.v_low, cell.v_high));
   }
