@@ -74,12 +74,14 @@ void show_scans(const std::vector<ScanGroup>& groups, const OpticalRun& run, boo
   const SurfaceGrid& grid = run.flux_map(index).grid();
   if (grid.over != SurfaceGrid::Over::plane) return;
   SceneStage stage = stage_of(run, StageMaps::own);
+  const PaintedSurface surface =
+      *std::ranges::find(stage.paintings.front().surfaces, run.experiment().receivers[index].name,
+                         &PaintedSurface::name);
   stage.paintings.clear();
   stage.arrows.clear();
   const PaintedBins bins = painted_bins(groups, grid);
   for (const ScanView& shown : views_of_scans(found)) {
-    Painting painting{shown.title, "W/m²", shown.is_difference, {}};
-    painting.surfaces.push_back(painted_receiver(run, run.experiment().receivers[index].name));
+    Painting painting{shown.title, "W/m²", shown.is_difference, {surface}};
     for (const ScanGroup& group : groups) {
       painting.surfaces.front().map_of_light.push_back(
           on_receiver(scan_map(group, shown, 1), grid, bins));

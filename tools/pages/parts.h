@@ -50,9 +50,6 @@ void add_light(SceneStage& stage, const OpticalRun& run, const RigidTransform& l
 // nearest. A remark of the stage states this.
 void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Quat>& lab_from_body);
 
-// Surface of a receiver's bins, for maps supplied by the caller.
-PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiver);
-
 // Stage without a scene: the uniform ellipsoid with the platform's ratios of principal moments, 1 m
 // long, and a rod along body x; with camera, radius and a remark. For a platform with a single axis
 // it is a disc about this axis.
