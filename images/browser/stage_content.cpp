@@ -17,12 +17,6 @@ Json vector_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json rgb_json(const Rgb& colour) {
-  Json bytes = Json::array();
-  for (const uint8_t byte : rgb_bytes(colour)) bytes.push_back(byte);
-  return bytes;
-}
-
 // Replaces a part by its bounding box along the body axes.
 StagePart box_of(const StagePart& part) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -60,7 +54,7 @@ std::vector<StagePart> shown_parts(std::vector<StagePart> parts, size_t most_tri
 
 Json part_json(const StagePart& part) {
   return {{"name", clean_text(part.name)},
-          {"colour", rgb_json(part.colour)},
+          {"colour", rgb_bytes(part.colour)},
           {"position", packed(part.position_m)},
           {"triangles", packed(part.triangles)}};
 }

@@ -171,6 +171,13 @@ void place_frames(PlotLayout& layout, const PlotRoom& room, const Axis& x_axis,
                   std::max(horizontal_axis_height(x_axis), names_height(layout.panels.back()));
 }
 
+// Draws a horizontal line through the frame at a value of y.
+void draw_level(Canvas& canvas, const ChartPanel& panel, double value, const Stroke& stroke) {
+  const double y = panel.frame.bottom() - panel.frame.height * panel.y.fraction(value);
+  if (std::isfinite(y)) canvas.line({panel.frame.x, y}, {panel.frame.right(), y}, stroke);
+}
+
+// Draws the grid and the zero line of a signed quantity, which the light grid does not emphasise.
 void draw_grid(Canvas& canvas, const ChartPanel& panel) {
   const PageBox& frame = panel.frame;
   for (const double value : panel.x.ticks.values) {
@@ -178,16 +185,10 @@ void draw_grid(Canvas& canvas, const ChartPanel& panel) {
     canvas.line({x, frame.y}, {x, frame.bottom()}, {grid_grey, 0.7});
   }
   for (const double value : panel.y.ticks.values) {
-    const double y = frame.bottom() - frame.height * panel.y.fraction(value);
-    canvas.line({frame.x, y}, {frame.right(), y}, {grid_grey, 0.7});
+    draw_level(canvas, panel, value, {grid_grey, 0.7});
   }
-}
-
-// Draws the zero line of a signed quantity, which the light grid does not emphasise.
-void draw_zero_line(Canvas& canvas, const ChartPanel& panel) {
-  if (panel.y.log || panel.y.range.low >= 0.0 || panel.y.range.high <= 0.0) return;
-  const double y = panel.frame.bottom() - panel.frame.height * panel.y.fraction(0.0);
-  canvas.line({panel.frame.x, y}, {panel.frame.right(), y}, {{0.6, 0.6, 0.6}, 0.9});
+  const bool has_zero_inside = !panel.y.log && panel.y.range.low < 0.0 && panel.y.range.high > 0.0;
+  if (has_zero_inside) draw_level(canvas, panel, 0.0, {{0.6, 0.6, 0.6}, 0.9});
 }
 
 // Draws shaded intervals. The label is at the top, or at the bottom if the legend covers the top.
@@ -212,14 +213,6 @@ void draw_shaded(Canvas& canvas, const ChartPanel& panel, const Plot& plot, bool
     canvas.text(plot.shaded_label,
                 {to - 6.0, is_covered ? panel.frame.bottom() - 0.7 * style.size : top}, style);
     labelled = true;
-  }
-}
-
-void draw_levels(Canvas& canvas, const ChartPanel& panel, const std::vector<double>& levels) {
-  for (const double level : levels) {
-    const double y = panel.frame.bottom() - panel.frame.height * panel.y.fraction(level);
-    if (!std::isfinite(y)) continue;
-    canvas.line({panel.frame.x, y}, {panel.frame.right(), y}, {ink, 0.9, 1.0, {2.0, 4.0}});
   }
 }
 
@@ -308,9 +301,10 @@ void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout) {
     const PagePoint corner = layout.below.value_or(free_corner(panel, legend).value_or(outside));
     draw_shaded(canvas, panel, plot, i == 0, {corner.x, corner.y, legend.width, legend.height});
     draw_grid(canvas, panel);
-    draw_zero_line(canvas, panel);
     draw_curves(canvas, panel);
-    draw_levels(canvas, panel, panels[i].levels);
+    for (const double level : panels[i].levels) {
+      draw_level(canvas, panel, level, {ink, 0.9, 1.0, {2.0, 4.0}});
+    }
     canvas.outline(panel.frame, {ink, 0.8});
     draw_vertical_axis(canvas, panel.frame, panel.y, layout.axis_width);
     if (i + 1 == layout.panels.size()) draw_horizontal_axis(canvas, panel.frame, panel.x);

@@ -167,14 +167,6 @@ CellTables laws_at(const ArrayDesign& design, std::span<const double> cell_area_
   return tables;
 }
 
-void require_finite(const std::vector<double>& current_A) {
-  for (size_t i = 0; i < current_A.size(); ++i) {
-    if (!std::isfinite(current_A[i])) {
-      throw NumericalError("the light on cell " + std::to_string(i) + " is no finite number");
-    }
-  }
-}
-
 void prepare_tables(PreparedArray& array, const LightBins& bins, bool once = false) {
   const std::vector<double> current_A = array.light(bins).current_A;
   array.tables =
@@ -391,7 +383,11 @@ ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
                            std::span<const double> responsivity_A_W) {
   const LightBins mean = mean_light(light);
   PreparedArray array = prepare_light(design, light, responsivity_A_W);
-  require_finite(array.light(mean).current_A);
+  CellLight cells = array.light(mean);
+  for (size_t i = 0; i < cells.current_A.size(); ++i) {
+    if (std::isfinite(cells.current_A[i])) continue;
+    throw NumericalError("the light on cell " + std::to_string(i) + " is no finite number");
+  }
   if (design.heat) array.warm_to(steady_temperature_K(array, mean));
   const Headline slope = slope_of_headline(array, mean);
   const Estimates estimates = estimate(array, light, mean, slope);
@@ -411,7 +407,7 @@ ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
   result.area_of_cells_m2 = array.total_area_m2;
   result.temperature_K = estimates[item::temperature];
   result.power_per_K_W = slope[item::power];
-  CellLight cells = array.light(mean);
+  cells = array.light(mean);  // at the temperature of the array
   result.cell_light_W = std::move(cells.incident_W);
   result.cell_photocurrent_A = std::move(cells.current_A);
   const ArrayCurve curve = array.curve(result.cell_photocurrent_A);

@@ -139,11 +139,6 @@ std::pair<int, int> sort_lattice(std::vector<FoundCell>& cells) {
   return {columns, rows};
 }
 
-Vec2 from_bins(const SurfaceGrid& grid, const Vec2& bins) {
-  return {grid.u_low + bins.x() * (grid.u_high - grid.u_low) / grid.width,
-          grid.v_low + bins.y() * (grid.v_high - grid.v_low) / grid.height};
-}
-
 Vec2 read_corner(const Settings& rectangle, const char* key) {
   const std::vector<double> uv = rectangle.numbers(key);
   if (uv.size() != 2) {
@@ -192,7 +187,9 @@ CellPlaces places_from_mesh(const Scene& scene, const SurfaceGrid& grid) {
   CellPlaces places{{}, {}, columns, rows};
   for (FoundCell& cell : cells) {
     places.parts.push_back(std::move(cell.parts));
-    places.centres.push_back(from_bins(grid, cell.centre));
+    places.centres.emplace_back(
+        grid.u_low + cell.centre.x() * (grid.u_high - grid.u_low) / grid.width,
+        grid.v_low + cell.centre.y() * (grid.v_high - grid.v_low) / grid.height);
   }
   return places;
 }
