@@ -23,9 +23,9 @@ TorqueMapHandle torque_map(const ExperimentHandle& experiment, int threads, cons
   const Call call(options.experiment, progress, log);
   add_lamps(options, lamps, call);
   return call.run([&] {
-    TorqueMapStage stage;
+    SceneStage stage;
     TorqueMapHandle handle{
-        run_torque_map(options, call.console(), page ? stage.watch() : NodeWatch())};
+        run_torque_map(options, call.console(), page ? add_to(stage) : NodeWatch())};
     if (page) {
       handle.page = torque_map_page(*handle.run, handle.wrenches, handle.result, std::move(stage),
                                     head_of(options, "torque-map"));

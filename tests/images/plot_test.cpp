@@ -161,7 +161,7 @@ Plot constant_plot() {
 }
 
 TEST(PlotPicture, DrawsAConstantAcrossTheMiddle) {
-  const Picture picture = plot_picture(constant_plot(), {});
+  const Picture picture = page_of(constant_plot(), {}).pixels();
   EXPECT_GT(pixels_of_colour(picture, blue, 0, picture.height), picture.width * 3 / 4);
   EXPECT_EQ(pixels_of_colour(picture, blue, 0, picture.height / 3), 0);
   EXPECT_EQ(pixels_of_colour(picture, blue, picture.height * 2 / 3, picture.height), 0);
@@ -171,8 +171,8 @@ TEST(PlotPicture, LeavesGapsWhereNothingCanBeShown) {
   Plot plot = constant_plot();
   plot.curves[0].x = {0.0, 0.25, 0.5, 0.75, 1.0};
   plot.curves[0].y = {5.0, 5.0, std::nan(""), 5.0, 5.0};
-  const Picture whole = plot_picture(constant_plot(), {});
-  const Picture gap = plot_picture(plot, {});
+  const Picture whole = page_of(constant_plot(), {}).pixels();
+  const Picture gap = page_of(plot, {}).pixels();
   const double ratio = static_cast<double>(pixels_of_colour(gap, blue, 0, gap.height)) /
                        pixels_of_colour(whole, blue, 0, whole.height);
   EXPECT_NEAR(ratio, 0.5, 0.02);
@@ -182,7 +182,7 @@ TEST(PlotPicture, LeavesGapsWhereNothingCanBeShown) {
 TEST(PlotPicture, DrawsBarsFromZeroInsideTheFrame) {
   Plot plot = constant_plot();
   plot.curves = {{"", {1.0}, {4.0}, {}, false, true}, {"", {2.0}, {2.0}, {}, false, true}};
-  const Picture picture = plot_picture(plot, {});
+  const Picture picture = page_of(plot, {}).pixels();
   const int tall = pixels_of_colour(picture, curve_stroke(0).colour, 0, picture.height);
   const int low = pixels_of_colour(picture, curve_stroke(1).colour, 0, picture.height);
   EXPECT_NEAR(static_cast<double>(tall) / low, 2.0, 0.02);
@@ -211,7 +211,7 @@ TEST(FreeCorner, KeepsOffBars) {
 TEST(PlotPicture, StacksPanels) {
   Plot plot = constant_plot();
   plot.below = {{"b", {{"", {0.0, 1.0}, {1.0, 2.0}}}}};
-  const Picture picture = plot_picture(plot, {});
+  const Picture picture = page_of(plot, {}).pixels();
   EXPECT_GT(pixels_of_colour(picture, blue, 0, picture.height / 2), 100);
   EXPECT_GT(pixels_of_colour(picture, blue, picture.height / 2, picture.height), 100);
 }
@@ -239,8 +239,8 @@ TEST(PlotPicture, SurvivesEveryDegeneratePlot) {
   least_on_log.curves[0].y = {5e-324, 5e-324};
   for (const Plot& plot : {nothing, empty_curve, negative_on_log, one_point_on_log, huge, infinite,
                            rounded_on_log, ends_on_log, least_on_log}) {
-    EXPECT_GT(plot_picture(plot, {}).height, 100);
-    EXPECT_THAT(svg_of(plot, {}), ::testing::HasSubstr("</svg>"));
+    EXPECT_GT(page_of(plot, {}).pixels().height, 100);
+    EXPECT_THAT(page_of(plot, {}).svg(), ::testing::HasSubstr("</svg>"));
   }
 }
 
@@ -250,7 +250,7 @@ TEST(PlotSvg, StaysSmallForLongHistories) {
     plot.curves[0].x.push_back(1.0 + i);
     plot.curves[0].y.push_back(std::sin(1e-4 * i) + 0.01 * (i % 7));
   }
-  EXPECT_LT(svg_of(plot, {}).size(), 300000u);
+  EXPECT_LT(page_of(plot, {}).svg().size(), 300000u);
 }
 
 TEST(PlotHtml, KeepsASpikeThatOneOfAHundredThousandSamplesHolds) {
@@ -374,7 +374,7 @@ TEST(Plot, LegendsDoNotCoverTheLabelOfABand) {
   plot.curves = {{"measured", {0.0, 1.0}, {1.0, 0.0}}, {"model", {0.0, 1.0}, {0.9, 0.1}}};
   plot.shaded = {{0.5, 1.0}};
   plot.shaded_label = "held out";
-  const std::string page = svg_of(plot, {});
+  const std::string page = page_of(plot, {}).svg();
   const auto height_of = [&](const std::string& text) {
     const std::regex element("translate\\([0-9.-]+ ([0-9.-]+)\\)[^>]*>" + text + "</text>");
     std::smatch found;
@@ -398,7 +398,7 @@ TEST(Plot, ManyBarsStandOnEachOther) {
     curve.bars = true;
     plot.curves.push_back(curve);
   }
-  const Picture picture = plot_picture(plot, {});
+  const Picture picture = page_of(plot, {}).pixels();
   std::array<double, 2> pixels{};
   for (size_t i = 0; i < picture.rgb.size(); i += 3) {
     for (size_t k = 0; k < 2; ++k) {
@@ -416,7 +416,8 @@ TEST(Plot, ManyBarsStandOnEachOther) {
 TEST(Styles, PaperHasNoTitleAndRelativelyLargerLetters) {
   Plot plot = constant_plot();
   plot.title = "A long title";
-  const std::string page = svg_of(plot, {}), paper = svg_of(plot, {}, PictureStyle::paper);
+  const std::string page = page_of(plot, {}).svg(),
+                    paper = page_of(plot, {}, PictureStyle::paper).svg();
   EXPECT_THAT(page, ::testing::HasSubstr(">" + plot.title + "</text>"));
   EXPECT_THAT(paper, ::testing::Not(::testing::HasSubstr(plot.title)));
   const auto width = [](const std::string& svg) {
@@ -425,8 +426,8 @@ TEST(Styles, PaperHasNoTitleAndRelativelyLargerLetters) {
   EXPECT_NEAR(width(paper) / width(page), 0.62, 0.01);
   // Letters have their size in points in both.
   EXPECT_THAT(paper, ::testing::HasSubstr("font-size=\"10.50\""));
-  const Picture slide = plot_picture(plot, {}, PictureStyle::slide);
-  EXPECT_GT(slide.width, plot_picture(plot, {}).width);
+  const Picture slide = page_of(plot, {}, PictureStyle::slide).pixels();
+  EXPECT_GT(slide.width, page_of(plot, {}).pixels().width);
 }
 
 }  // namespace

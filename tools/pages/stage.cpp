@@ -156,11 +156,6 @@ StageState lit_state(const OpticalRun& run, const RigidTransform& lab_from_body,
   return state;
 }
 
-PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiver) {
-  const SurfaceGrid& grid = run.flux_map(run.flux_map_index(receiver)).grid();
-  return painted(run.experiment().scene, grid, receiver, "");
-}
-
 void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Quat>& lab_from_body) {
   constexpr size_t most_lights = 12;
   constexpr uint64_t rays = 1u << 18;  // direct light on flat maps is gathered without noise

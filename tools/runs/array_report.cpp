@@ -228,7 +228,7 @@ Product day_report(const Console& console, const ArrayDesign& design, DaySetting
   const double hours = settings.duration_s / 3600.0;
   const double capacity_Wh = settings.battery.capacity_J / 3600.0;
   console.heading("Array and battery over " + show(hours) + " h");
-  console.line("  cells end at            " + show(day.final_temperature_K) + " K, array at " +
+  console.line("  cells end at            " + show(day.temperature_K.back()) + " K, array at " +
                show(day.array_W.back()) + " W, " + show(day.mean_array_W) + " W on average");
   console.line("  load of " + show(settings.load_W) + " W needs " + show(settings.load_W * hours) +
                " Wh; the battery holds " + show(capacity_Wh) + " Wh, which is " +

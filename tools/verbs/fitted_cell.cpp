@@ -217,8 +217,8 @@ namespace {
 // AM1.5G sunlight. Requires the area of the module.
 double efficiency_peak_of(const ListedModule& module) {
   const WeighedSpectrum sunlight[] = {{{.shape = Spectrum::Shape::am15g}}};
-  const double amperes_W =
-      band_responsivity_A_W(silicon_quantum_efficiency(1.0), Bands{}, sunlight)[0];
+  const double amperes_W = band_responsivity_A_W(
+      quantum_efficiency_of("silicon_interdigitated", 1.0), Bands{}, sunlight)[0];
   return module.photocurrent_A /
          (amperes_W * module.rated.irradiance_W_m2 * module.cell.reference_area_m2);
 }

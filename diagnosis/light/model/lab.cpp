@@ -153,13 +153,7 @@ void LightLab::place_array() {
 }
 
 void LightLab::place_cells() {
-  ArrayLight map;
-  map.width = grid().width;
-  map.height = grid().height;
-  map.u_low = grid().u_low;
-  map.u_high = grid().u_high;
-  map.v_low = grid().v_low;
-  map.v_high = grid().v_high;
+  const SurfaceGrid& map = grid();
   if (design().places) {
     const double du = (map.u_high - map.u_low) / map.width,
                  dv = (map.v_high - map.v_low) / map.height;
