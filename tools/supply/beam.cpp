@@ -3,7 +3,7 @@
 
 #include "tools/runs/array_power.h"
 #include "tools/runs/optical_run.h"
-#include "tools/supply/options.h"
+#include "tools/supply/trade.h"
 
 namespace photorque {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/supply/report.h"
+#include "tools/supply/trade.h"
 
 #include <algorithm>
 #include <cmath>
