@@ -56,11 +56,6 @@ class Measurement:
     sequence: int
     sent_ns: int
 
-    @property
-    def heading_rad(self) -> float:
-        """Earlier name of yaw_rad."""
-        return self.yaw_rad
-
 
 def seal(kind: int, sequence: int, tick: int, run: int, body: bytes = b"") -> bytes:
     """A packet with its checksum."""

@@ -69,7 +69,7 @@ Verb kind() {
   return {"supply",
           "Comparison of power supplies (battery, cable, microwaves, induction, light): power, "
           "mass, torque",
-          command_that_writes(run_supply),
+          command_that_writes(experiment_options, run_supply),
           {"platform", "environment", "disturbance", "sensors", "supply_trade"},
           "[supply_trade]"};
 }

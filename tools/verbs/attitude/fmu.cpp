@@ -71,9 +71,6 @@ void append_variable(pugi::xml_node variables, const UnitVariable& variable,
     set_attribute(type, "max", unit.max_torque_N_m);
     set_attribute(type, "start", 0.0);
   }
-  if (!is_2 && !variable.old_name.empty()) {
-    set_attribute(element.append_child("Alias"), "name", variable.old_name);
-  }
 }
 
 // Outputs at a tick do not depend on inputs at that tick. FMI 3.0 lists them by reference, 2.0 by
@@ -303,12 +300,23 @@ std::vector<std::pair<std::string, std::string>> files_below(const fs::path& fol
   return files;
 }
 
+struct FmuOptions : CommandOptions {
+  int fmi = 3;
+};
+
+void add_options(Command& command, FmuOptions& options) {
+  command.add_experiment(options);
+  command.add("--fmi", options.fmi, "Version of the Functional Mock-up Interface: 3 or 2").range =
+      Option::Between<int>(2, 3);
+}
+
 // Writes NAME.fmu: modelDescription.xml, the library, the experiment with its overrides, every file
 // that it names, and the table of its light. Before it is packed, the unit is loaded and makes one
 // step, which also computes this table. Throws InputError if the experiment cannot run or a file is
 // missing.
-RunResult pack_unit(const RunOptions& options, const Console& console, bool is_2) {
+RunResult pack_unit(const FmuOptions& options, const Console& console) {
   const WallTime wall;
+  const bool is_2 = options.fmi == 2;
   const UnitDescription unit = describe_unit(options);
   RunResult result;
   result.provenance = AttitudeExperiment(options).provenance(options.seed.value_or(1));
@@ -340,28 +348,13 @@ RunResult pack_unit(const RunOptions& options, const Console& console, bool is_2
   return result;
 }
 
-struct FmuOptions : CommandOptions {
-  int fmi = 3;
-};
-
-void add_options(Command& command, FmuOptions& options) {
-  command.add_experiment(options);
-  command.add("--fmi", options.fmi, "Version of the Functional Mock-up Interface: 3 or 2").range =
-      Option::Between<int>(2, 3);
-}
-
-void run(const FmuOptions& options, const Program&) {
-  const Console console = terminal(options);
-  write_results(options, console, pack_unit(options, console, options.fmi == 2));
-}
-
 }  // namespace
 
 Verb kind() {
   return {
       "fmu",
       "The platform as an FMI unit (3.0 or 2.0) for co-simulation in other programs",
-      command_with(add_options, run),
+      command_that_writes(add_options, pack_unit),
       {"platform", "environment", "disturbance", "sensors", "propagate", "serve", "light", "array"},
       "[platform]"};
 }
