@@ -35,7 +35,7 @@ struct LightHandle {
       if (!receiver.flux_map) continue;
       flux_maps.emplace_back(receiver.name, receiver.flux_map->flux_map(light.sums[i]));
     }
-    wrench = wrench_about(run->wrench().total(light.sums[run->wrench_index()]), Vec3::Zero());
+    wrench = run->wrench_of(light);
   }
 };
 
