@@ -4,8 +4,7 @@
 // end exactly at every jump of a command or a law. Dense output is available within each step, and
 // events are located on it. Derivatives are computed on request. After 1e5 s of a free asymmetric
 // body the attitude error is below 1e-9 rad; energy and momentum are conserved to 1e-13
-// (tests/attitude/propagator_test.cpp; attitude_benchmark compares methods). Equal inputs give
-// bitwise equal results.
+// (tests/attitude/propagator_test.cpp). Equal inputs give bitwise equal results.
 #pragma once
 
 #include <functional>

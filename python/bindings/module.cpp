@@ -24,12 +24,9 @@ PYBIND11_MODULE(_photorque, module) {
   python::bind_results(module);
   python::bind_lamp(module);
   python::bind_light(module);
-  python::bind_render(module);
   python::bind_wrenches(module);
   python::bind_motion(module);
   python::bind_platform(module);
   python::bind_diagnosis(module);
-  python::bind_cell_fit(module);
   python::bind_tracking(module);
-  python::bind_check(module);
 }

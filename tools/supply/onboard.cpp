@@ -6,7 +6,7 @@
 #include "attitude/studies/cable.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
-#include "tools/supply/options.h"
+#include "tools/supply/trade.h"
 
 namespace photorque {
 namespace {

@@ -577,7 +577,7 @@ namespace photorque::verbs::fit_cell {
 Verb kind() {
   return {"fit-cell",
           "Solar cell parameters, with errors, from current-voltage sweeps or a datasheet",
-          command_that_writes(run_fit_cell),
+          command_that_writes(experiment_options, run_fit_cell),
           {"fit"},
           "[fit]",
           [](const RunOptions& options) { return run_fit_cell(options, Console()); }};

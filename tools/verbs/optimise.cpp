@@ -5,7 +5,6 @@
 #include "core/text/parse.h"
 #include "tools/sweeps/optimiser.h"
 #include "tools/sweeps/report.h"
-#include "tools/sweeps/values.h"
 #include "tools/verbs/studies.h"
 
 namespace photorque::verbs::optimise {

@@ -210,19 +210,6 @@ void traced_page_options(Command& command, CommandOptions& options) {
   command.add_page(options);
 }
 
-std::function<Command()> command_that_writes(RunResult (*run)(const RunOptions&, const Console&)) {
-  return [run] {
-    const auto options = std::make_shared<CommandOptions>();
-    Command command{options};
-    command.add_experiment(*options);
-    command.run = [options, run](const Program&) {
-      const Console console = terminal(*options);
-      write_results(*options, console, run(*options, console));
-    };
-    return command;
-  };
-}
-
 // Removes control characters except line ends and tabs: names may come from hostile files.
 static std::string clean_lines(const std::string& text) {
   std::string clean;

@@ -121,11 +121,10 @@ void print_camera(const Console& console, const CameraRun& run) {
                          " images a second on one core, exposure simulated, read and solved");
 }
 
-void run(const CommandOptions& options, const Program&) {
-  const Console console = terminal(options);
+RunResult run(const CommandOptions& options, const Console& console) {
   const CameraRun run = run_camera(options, console);
   print_camera(console, run);
-  write_results(options, console, run.result);
+  return run.result;
 }
 
 }  // namespace
@@ -133,7 +132,7 @@ void run(const CommandOptions& options, const Program&) {
 Verb kind() {
   return {"camera",
           "Attitude error of a camera that tracks markers, from its geometry",
-          command_with(experiment_options, run),
+          command_that_writes(experiment_options, run),
           {"platform", "environment", "disturbance", "sensors", "camera_study"},
           "[sensors.camera] with markers"};
 }

@@ -247,12 +247,11 @@ void add_options(Command& command, Options& options) {
               "time_history.csv of propagate)");
 }
 
-void run(const Options& options, const Program&) {
-  const Console console = terminal(options);
+RunResult run(const Options& options, const Console& console) {
   const EstimateRun run = run_estimate(options, console, options.recordings, options.truth);
   for (const EstimateRun::Estimated& one : run.estimated) print_method(console, one);
   if (run.consistency) print_consistency(console, *run.consistency);
-  write_results(options, console, run.result);
+  return run.result;
 }
 
 }  // namespace
@@ -260,7 +259,7 @@ void run(const Options& options, const Program&) {
 Verb kind() {
   return {"estimate",
           "Attitude and rate by Kalman filter and smoother, from recordings or simulated runs",
-          command_with(add_options, run),
+          command_that_writes(add_options, run),
           {"platform", "environment", "disturbance", "sensors", "recording", "estimate"},
           "[platform]"};
 }

@@ -104,7 +104,7 @@ Verb kind() {
   return {
       "serve",
       "The platform in real time: measurements out, commands in, over UDP",
-      command_that_writes(serve_experiment),
+      command_that_writes(experiment_options, serve_experiment),
       {"platform", "environment", "disturbance", "sensors", "propagate", "serve", "light", "array"},
       "[platform]"};
 }
