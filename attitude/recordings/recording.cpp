@@ -97,7 +97,7 @@ class RecordingReader {
 
   // Reads an AEM: attitudes, and rates if it has any.
   void take_attitudes() {
-    const std::vector<AemAttitude> attitudes = aem_attitudes(path_);
+    const std::vector<AemAttitude> attitudes = read_aem(path_).rows;
     for (const auto& [channel, written] : options_.columns) {
       recording_.report.absent_columns.insert(written);
     }
