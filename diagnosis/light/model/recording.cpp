@@ -11,7 +11,7 @@
 #include "core/errors.h"
 #include "core/numerics/median.h"
 #include "core/numerics/random.h"
-#include "core/numerics/steady_intervals.h"
+#include "core/numerics/series.h"
 #include "core/settings/settings.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
