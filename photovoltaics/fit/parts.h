@@ -24,6 +24,25 @@ constexpr double fit_temperature_K = 298.15;
 CellParameters single_diode(double saturation_A, double scale_V, double series_ohm,
                             double shunt_ohm, double temperature_K = fit_temperature_K);
 
+// The circuit of one diode, by its numbers.
+struct DiodeCircuit {
+  double saturation_A, scale_V, series_ohm, shunt_S;
+};
+// Current and slope of a lit diode at a reading, and the derivatives of the current.
+struct DiodeCurrent {
+  double current_A;
+  double slope_S;  // −dI/dV
+  // By the photocurrent, by the logarithms of I₀, a = n V_t, R_s and G = 1/R_sh, and by τ.
+  Eigen::Matrix<double, 1, 6> derivatives_A;
+};
+// The currents at the readings of a sweep, with the photocurrent `light_A` at light 1, from
+// 0 = I_L − I₀ (e^{V_d/a} − 1) − G V_d − τ g dV_d/dt − I, with V_d = V + I R_s, g = I₀ e^{V_d/a}/a
+// and dV_d/dt = dV/dt/(1 + (g + G) R_s). Without `storage`, τ is 0 and has no derivative.
+std::vector<DiodeCurrent> currents_of(const DiodeCircuit& circuit, double light_A,
+                                      const IvSweep& sweep, std::optional<double> storage = {});
+// Sum of the squared differences of the readings from such currents [A²].
+double squares_A2(const IvSweep& sweep, const std::vector<DiodeCurrent>& currents);
+
 // e^x with its error.
 inline Estimate exponential(double x, double error) {
   return {std::exp(x), std::exp(x) * error};
@@ -103,6 +122,8 @@ std::vector<BoundReached> bounds_reached(const inference::Fit& best,
 
 // Deviation of each reading of some sweeps from its curve, in units of its error.
 using Deviations = std::vector<std::vector<double>>;
+std::vector<double> deviations(const IvSweep& sweep, const std::vector<DiodeCurrent>& currents,
+                               const SweepNoise& noise, double light_A);
 // Moves readings that errors do not explain from the sweeps to `taken`, and refits, until there are
 // none. `off`: the deviations at a point of the fit. Many such readings, or more than two in a row,
 // are not accidental: then the curve is not that of a diode, and they are kept.
