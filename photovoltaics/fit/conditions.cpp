@@ -192,25 +192,17 @@ double relative_squares(const Task& task, Index run, const VectorXd& at) {
   return squares_A2(sweep, c.currents(sweep)) / (c.photocurrent_A * c.photocurrent_A);
 }
 
-// Distance of each reading from its curve, in units of its error.
-Deviations off_curves(const Task& task, const VectorXd& at) {
-  Deviations off;
-  for (size_t k = 0; k < task.curves.size(); ++k) {
-    const auto run = static_cast<Index>(k);
-    const Circuit c = circuit_of(task, run, values_of(at, run));
-    const IvSweep& sweep = task.curves[k].sweep;
-    off.push_back(deviations(sweep, c.currents(sweep), task.noise, c.photocurrent_A));
-  }
-  return off;
-}
-
 inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierReading>& outliers) {
   std::vector<IvSweep*> sweeps;
   for (CurveAt& curve : task.curves) sweeps.push_back(&curve.sweep);
   const auto refit = [&](const VectorXd& at) { return fit_rounds(task, at, 4); };
-  const inference::Fit fit = refit_without_outliers(
-      refit(start), sweeps, [&](const VectorXd& at) { return off_curves(task, at); }, refit,
-      outliers);
+  const auto off_curve = [&](size_t k, const VectorXd& at) {
+    const auto run = static_cast<Index>(k);
+    const Circuit c = circuit_of(task, run, values_of(at, run));
+    return deviations(*sweeps[k], c.currents(*sweeps[k]), task.noise, c.photocurrent_A);
+  };
+  const inference::Fit fit =
+      refit_without_outliers(refit(start), sweeps, off_curve, refit, outliers);
   // Residuals far beyond the noise are errors of the model, which have one size at all voltages.
   constexpr double far = 3.0;
   task.variance = fit.variance();

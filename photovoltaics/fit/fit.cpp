@@ -131,15 +131,6 @@ VectorXd start_from(const IvSweep& sweep, const SweepNoise& noise) {
   return best.at;
 }
 
-// Distance of each reading from the curve, in units of its error.
-Deviations off_curve(std::span<const IvSweep> sweeps, const SweepNoise& noise, const VectorXd& x) {
-  Deviations off;
-  for (const IvSweep& sweep : sweeps) {
-    off.push_back(deviations(sweep, currents(sweep, x), noise, x[light]));
-  }
-  return off;
-}
-
 double rms_A(std::span<const IvSweep> sweeps, const VectorXd& x) {
   double squares = 0.0, points = 0.0;
   for (const IvSweep& sweep : sweeps) {
@@ -195,9 +186,11 @@ inference::Fit best_fit(std::vector<IvSweep>& sweeps, const SweepNoise& noise,
   };
   std::vector<IvSweep*> changed;
   for (IvSweep& sweep : sweeps) changed.push_back(&sweep);
+  const auto off_curve = [&](size_t sweep, const VectorXd& x) {
+    return deviations(sweeps[sweep], currents(sweeps[sweep], x), noise, x[light]);
+  };
   return refit_without_outliers(
-      fitted(), changed, [&](const VectorXd& at) { return off_curve(sweeps, noise, at); },
-      [&](const VectorXd&) { return fitted(); }, outliers);
+      fitted(), changed, off_curve, [&](const VectorXd&) { return fitted(); }, outliers);
 }
 
 }  // namespace

@@ -309,7 +309,7 @@ std::vector<NamedBound> resistance_bounds(Index series, Index shunt) {
 namespace {
 
 // One round of refit_without_outliers(): returns whether there were outliers.
-bool take_outliers(std::span<IvSweep* const> sweeps, const Deviations& off,
+bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vector<double>>& off,
                    std::vector<OutlierReading>& taken) {
   constexpr double far = 8.0, most = 0.1;
   std::vector<double> all;
@@ -342,12 +342,15 @@ bool take_outliers(std::span<IvSweep* const> sweeps, const Deviations& off,
 
 }  // namespace
 
-inference::Fit refit_without_outliers(inference::Fit fit, std::span<IvSweep* const> sweeps,
-                                      const std::function<Deviations(const VectorXd&)>& off,
-                                      const std::function<inference::Fit(const VectorXd&)>& refit,
-                                      std::vector<OutlierReading>& taken) {
+inference::Fit refit_without_outliers(
+    inference::Fit fit, std::span<IvSweep* const> sweeps,
+    const std::function<std::vector<double>(size_t, const VectorXd&)>& off,
+    const std::function<inference::Fit(const VectorXd&)>& refit,
+    std::vector<OutlierReading>& taken) {
   for (int round = 0; round < 4 && std::isfinite(fit.chi2); ++round) {
-    if (!take_outliers(sweeps, off(fit.at), taken)) break;
+    std::vector<std::vector<double>> all;
+    for (size_t s = 0; s < sweeps.size(); ++s) all.push_back(off(s, fit.at));
+    if (!take_outliers(sweeps, all, taken)) break;
     for (const IvSweep* sweep : sweeps) check_sweep(*sweep);
     fit = refit(fit.at);
   }

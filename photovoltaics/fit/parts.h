@@ -120,16 +120,16 @@ struct NamedBound {
 std::vector<BoundReached> bounds_reached(const inference::Fit& best,
                                          std::span<const NamedBound> named, Eigen::Index first = 0);
 
-// Deviation of each reading of some sweeps from its curve, in units of its error.
-using Deviations = std::vector<std::vector<double>>;
+// Deviation of each reading of a sweep from its curve, in units of its error. `light_A`: the
+// photocurrent.
 std::vector<double> deviations(const IvSweep& sweep, const std::vector<DiodeCurrent>& currents,
                                const SweepNoise& noise, double light_A);
 // Moves readings that errors do not explain from the sweeps to `taken`, and refits, until there are
-// none. `off`: the deviations at a point of the fit. Many such readings, or more than two in a row,
-// are not accidental: then the curve is not that of a diode, and they are kept.
+// none. `off`: the deviations of a sweep at a point of the fit. Many such readings, or more than
+// two in a row, are not accidental: then the curve is not that of a diode, and they are kept.
 inference::Fit refit_without_outliers(
     inference::Fit fit, std::span<IvSweep* const> sweeps,
-    const std::function<Deviations(const Eigen::VectorXd& at)>& off,
+    const std::function<std::vector<double>(size_t sweep, const Eigen::VectorXd& at)>& off,
     const std::function<inference::Fit(const Eigen::VectorXd& start)>& refit,
     std::vector<OutlierReading>& taken);
 
