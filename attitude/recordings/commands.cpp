@@ -4,7 +4,7 @@
 
 #include "attitude/recordings/recording.h"
 #include "core/errors.h"
-#include "core/numerics/steady_intervals.h"
+#include "core/numerics/series.h"
 
 namespace photorque {
 namespace {

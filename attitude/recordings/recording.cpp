@@ -54,10 +54,7 @@ const std::vector<std::pair<std::string, KeyUnit>>& known_channels() {
 }
 
 FileColumn column_named(const std::string& in_file, const RecordingOptions& options) {
-  std::string name = in_file;
-  for (const auto& [channel, written] : options.columns) {
-    if (written == in_file) name = channel;
-  }
+  const std::string name(name_of_column(in_file, options.columns));
   const KeyUnit unit = unit_of_key(name);
   for (const auto& [channel, known] : known_channels()) {
     if (known.stem == unit.stem && known.dimension == unit.dimension) return {channel, unit.to_SI};
@@ -97,7 +94,7 @@ class RecordingReader {
 
   // Reads an AEM: attitudes, and rates if it has any.
   void take_attitudes() {
-    const std::vector<AemAttitude> attitudes = aem_attitudes(path_);
+    const std::vector<AemAttitude> attitudes = read_aem(path_).rows;
     for (const auto& [channel, written] : options_.columns) {
       recording_.report.absent_columns.insert(written);
     }
@@ -245,9 +242,8 @@ class RecordingReader {
       if (cells_.size() == 1 && time_column_ == 0U && std::isfinite(time_of_row())) {
         ++rows_of_times_;
       } else if (!first_malformed_) {
-        first_malformed_ = error(
-            "", "a row of " + std::to_string(cells_.size()) + " cells",
-            std::to_string(columns_.size()) + ", as in the header; numbers have a point, no comma");
+        first_malformed_ = wrong_row({path_.string(), static_cast<int>(lines_.number())},
+                                     cells_.size(), columns_.size());
       }
       return;
     }

@@ -105,28 +105,6 @@ std::vector<std::string> units_in(const std::vector<std::string>& cells) {
   return any ? cells : std::vector<std::string>();
 }
 
-// The cells of a line between blanks, a unit with its name: "Time ( s )", "x / m", "I in A".
-std::vector<std::string> split_at_names(std::string_view line) {
-  std::vector<std::string> cells;
-  bool joins = false;
-  for (const std::string_view word : words_of(line)) {
-    const bool is_link = word == "/" || word == "in";
-    const auto brackets = [&](const char* kind) {
-      return cells.empty() ? 0 : std::ranges::count_if(cells.back(), [&](char c) {
-        return std::string_view(kind).find(c) != std::string_view::npos;
-      });
-    };
-    const bool is_unit = word.starts_with('(') || word.starts_with('[');
-    if (!cells.empty() && (joins || is_link || is_unit || brackets("([") > brackets(")]"))) {
-      cells.back() += " " + std::string(word);
-    } else {
-      cells.emplace_back(word);
-    }
-    joins = is_link;
-  }
-  return cells;
-}
-
 struct Header {
   std::vector<std::string> cells;  // empty if there is another number of them than in a row
   bool is_split_otherwise = false;
@@ -177,7 +155,10 @@ Header names_in_line(const NumberedLine& line, char separator, size_t width) {
       at = std::min(text.find_first_not_of(' ', end), text.size());
     }
   }
-  if (cells.size() != width) cells = split_at_names(text);
+  if (cells.size() != width) {
+    parts = names_between_blanks(text);
+    cells.assign(parts.begin(), parts.end());
+  }
   if (cells.size() != width && !longer.empty()) {
     longer.resize(width);
     if (std::ranges::any_of(longer, has_unit)) cells = std::move(longer);

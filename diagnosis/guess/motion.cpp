@@ -15,7 +15,6 @@
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/guess/header.h"
 #include "diagnosis/guess/places.h"
-#include "diagnosis/guess/rates.h"
 
 namespace photorque {
 namespace {

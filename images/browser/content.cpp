@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/extremes.h"
+#include "core/numerics/series.h"
 #include "core/text/format.h"
 #include "images/drawing/colour.h"
 #include "images/drawing/plot.h"
