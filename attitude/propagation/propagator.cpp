@@ -47,7 +47,7 @@ EventFunction tilt_event(double limit_rad) {
 }
 
 EventFunction battery_empty_event(double capacity_C) {
-  return {"battery_empty", true, true,
+  return {"battery_empty", false, true,
           [capacity_C](const Lanes&, const Lanes* y) { return y[component::charge] - capacity_C; }};
 }
 

@@ -111,9 +111,9 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   }
   if (settings.has(about_axis.name)) {
     return make_disturbance<SocketDrag>(
-        {scalar_parameter(settings, about_axis), scalar_parameter(settings, across_axis)});
+        {parameters_of(settings, about_axis), parameters_of(settings, across_axis)});
   }
-  return make_disturbance<IsotropicDrag>({scalar_parameter(settings, coefficient)});
+  return make_disturbance<IsotropicDrag>({parameters_of(settings, coefficient)});
 }
 
 std::vector<Key> socket_keys() {
