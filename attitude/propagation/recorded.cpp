@@ -48,16 +48,6 @@ size_t rows_of(const PropagationRun& run) {
   return static_cast<size_t>(std::floor(run.duration_s * run.output_rate_Hz + 1e-6)) + 1;
 }
 
-// Reads the instruments at a tick and calls the commander of the run.
-Propagator::Commander commander_at_ticks(const PropagationRun& run, const Propagator& propagator,
-                                         LiveInstruments& instruments, const PowerHistory* beside) {
-  return [&run, &propagator, &instruments, beside](double time_s, std::span<const double> y) {
-    std::optional<PowerState> power;
-    if (beside != nullptr) power = beside->at(std::min(time_s, beside->known_until_s()));
-    return run.commander(instruments.read(time_s, y, propagator.held(), power));
-  };
-}
-
 // Number of recorded rows per row of the history. The history, which always contains the last row,
 // then has at most `history_rows` rows (at least 2).
 size_t thinning(size_t rows, size_t history_rows) {
@@ -86,7 +76,12 @@ RecordedRun::RecordedRun(const PropagationRun& run, std::function<void(double)> 
           [this](const Samples& samples) { take_in(samples); }) {
   if (!run.commander) return;
   instruments_.emplace(dynamics_, camera_, run.sensors, run.seed);
-  propagator_.follow_commander(commander_at_ticks(run, propagator_, *instruments_, beside));
+  // Reads the instruments at a tick and calls the commander of the run.
+  propagator_.follow_commander([this, &run](double time_s, std::span<const double> y) {
+    std::optional<PowerState> power;
+    if (beside_ != nullptr) power = beside_->at(std::min(time_s, beside_->known_until_s()));
+    return run.commander(instruments_->read(time_s, y, propagator_.held(), power));
+  });
 }
 
 void RecordedRun::record() {

@@ -116,12 +116,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   return make_disturbance<IsotropicDrag>({parameters_of(settings, coefficient)});
 }
 
-std::vector<Key> socket_keys() {
-  using namespace key;
-  return {radius,    half_angle, recess_half_angle, sheared_share,        gap, rated_load,
-          stiffness, supply,     hole_area,         discharge_coefficient};
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -135,7 +129,10 @@ DisturbanceKind kind() {
                     .needs = Requirement::bearing,
                     .minimum_sum =
                         MinimumSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},
-      .keys = {coefficient, about_axis, across_axis, key::socket.of(socket_keys())}};
+      .keys = {coefficient, about_axis, across_axis,
+               key::socket.of({key::radius, key::half_angle, key::recess_half_angle,
+                               key::sheared_share, key::gap, key::rated_load, key::stiffness,
+                               key::supply, key::hole_area, key::discharge_coefficient})}};
 }
 
 }  // namespace photorque::kinds::bearing_drag

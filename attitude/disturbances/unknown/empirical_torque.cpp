@@ -1,6 +1,6 @@
 // A measured or fitted torque without a known law. It is a function of one or two variables of the
 // motion, about stated axes, with free coefficients. The terms of two functions are multiplied.
-// shape.cpp reads the function, keys.cpp declares its keys.
+// shape.cpp declares and reads the keys of the function.
 #include <algorithm>
 #include <cmath>
 
