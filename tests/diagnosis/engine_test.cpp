@@ -63,6 +63,12 @@ TEST(Diagnose, NamesADipoleAndMeasuresIt) {
   EXPECT_NEAR(*d.alternatives.front().holdout_chi2_per_sample, 1.0, 0.15);
 }
 
+size_t place_of(const std::string& label, const Candidates& all) {
+  const auto at = std::ranges::find(all.list, label, &Candidate::label);
+  if (at == all.list.end()) throw std::runtime_error("no candidate " + label);
+  return static_cast<size_t>(at - all.list.begin());
+}
+
 // A dipole and a draught together: what the slopes at the nominal model predict is what the fit
 // gains.
 TEST(Score, PredictsTheGainOfTwoEffects) {
@@ -74,12 +80,7 @@ TEST(Score, PredictsTheGainOfTwoEffects) {
   const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
   const Fit nominal = fit_nominal(nominal_model(), runs);
   const Candidates all = all_candidates(nominal_model(), runs);
-  const auto named = [&](const std::string& label) {
-    const auto at = std::find_if(all.list.begin(), all.list.end(),
-                                 [&](const Candidate& c) { return c.label == label; });
-    return static_cast<size_t>(at - all.list.begin());
-  };
-  const size_t dipole = named("magnetic_dipole"), draught = named("room_draft");
+  const size_t dipole = place_of("magnetic_dipole", all), draught = place_of("room_draft", all);
   const Trial before = nominal_trial(nominal, all);
   const inference::LinearProblem problem = linear_problem(
       before, all, {{dipole, {all[dipole].start}}, {draught, {all[draught].start}}}, runs);
@@ -160,10 +161,9 @@ TEST(Scan, StartsAnAppendageWithinItsResonance) {
   for (int channel = 0; channel < 6; ++channel) seen.noise.set(channel, {1e-7, 0.0, 0.0});
   const std::vector<Observation> runs = {seen};
   const Candidates all = all_candidates(nominal, runs);
-  const auto mode = std::ranges::find(all.list, "flexible_mode", &Candidate::label);
-  ASSERT_NE(mode, all.list.end());
   const std::vector<Start> starts =
-      starts_of(*mode, nominal_trial(fit_nominal(nominal, runs), all), runs, runs, {}, {});
+      starts_of(all[place_of("flexible_mode", all)], nominal_trial(fit_nominal(nominal, runs), all),
+                runs, runs, {}, {});
   const auto best = std::ranges::max_element(starts, {}, &Start::gain);
   ASSERT_NE(best, starts.end());
   const Disturbance& d = best->disturbance;
@@ -183,15 +183,11 @@ TEST(Trial, AThirdOfTheInertiaIsNoExplanation) {
   const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
   const NominalModel nominal = nominal_model();
   const Candidates all = all_candidates(nominal, runs);
-  const auto error = std::find_if(all.list.begin(), all.list.end(), [](const Candidate& c) {
-    return c.effect.kind == "inertia_error";
-  });
-  ASSERT_NE(error, all.list.end());
+  const size_t error = place_of("inertia_error", all);
   FitSettings settings;
   settings.max_iterations = 60;
-  const Trial trial =
-      extend(nominal_trial(fit_nominal(nominal, runs), all), all,
-             static_cast<size_t>(error - all.list.begin()), {error->start}, runs, settings);
+  const Trial trial = extend(nominal_trial(fit_nominal(nominal, runs), all), all, error,
+                             {all[error].start}, runs, settings);
   EXPECT_THAT(trial.objection, testing::HasSubstr("inertia would change by"));
 }
 
@@ -207,11 +203,7 @@ TEST(Trial, NumbersBeyondPhysicsAreRefitted) {
     });
     const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
     const Candidates all = all_candidates(nominal_model(), runs);
-    const auto named = [&](const std::string& label) {
-      const auto at = std::ranges::find(all.list, label, &Candidate::label);
-      return static_cast<size_t>(at - all.list.begin());
-    };
-    const size_t draught = named("room_draft"), cable = named("tether");
+    const size_t draught = place_of("room_draft", all), cable = place_of("tether", all);
     Trial trial = extend(nominal_trial(fit_nominal(nominal_model(), runs), all), all, draught,
                          {all[draught].start}, runs);
     if (with_cable) trial = extend(trial, all, cable, {all[cable].start}, runs);
@@ -255,8 +247,7 @@ TEST(Trial, CompliancesGoBackWithinPhysicsTogether) {
     });
     const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
     const Candidates all = all_candidates(nominal_model(), runs);
-    const auto sag = static_cast<size_t>(
-        std::ranges::find(all.list, "elastic_sag", &Candidate::label) - all.list.begin());
+    const size_t sag = place_of("elastic_sag", all);
     const Trial fitted = extend(nominal_trial(fit_nominal(nominal_model(), runs), all), all, sag,
                                 {all[sag].start}, runs);
     const auto values = [](const Trial& t) {

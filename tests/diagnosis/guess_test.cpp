@@ -343,6 +343,15 @@ TEST(Guess, OneCoordinateOrASpeedIsAlongALine) {
       AllOf(HasSubstr("topology = \"planar\""), HasSubstr("velocity_x_km_h = \"speed (km/h)\"")));
 }
 
+// The guess of this file has one effect: a spring of this stiffness, to a part of it.
+void expect_spring(const fs::path& file, double stiffness, double part) {
+  const Settings guessed = settings_in(guess_experiment({file}, "."));
+  const std::vector<Settings> effects = guessed.tables("disturbance");
+  ASSERT_EQ(effects.size(), 1U);
+  EXPECT_EQ(effects[0].text("kind"), "sliding_spring");
+  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, part * stiffness);
+}
+
 // x = x₀ + a e^(−γt) cos ωt has the stiffness ω² + γ² for a unit mass. A body between cushions has
 // no spring.
 TEST(Guess, AWeightThatOscillatesHangsOnASpring) {
@@ -356,12 +365,8 @@ TEST(Guess, AWeightThatOscillatesHangsOnASpring) {
     spring += printed("%.4f,%.5f\n", t, middle_m + x + noise());
     cushions += printed("%.4f,%.5f\n", t, std::abs(phase) + noise());
   }
-  const Settings guessed = settings_in(guess_experiment({test_file("spring.csv", spring)}, "."));
-  const std::vector<Settings> effects = guessed.tables("disturbance");
-  ASSERT_EQ(effects.size(), 1U);
-  EXPECT_EQ(effects[0].text("kind"), "sliding_spring");
   const double stiffness = omega_rad_s * omega_rad_s + damping_1_s * damping_1_s;
-  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, 0.03 * stiffness);
+  expect_spring(test_file("spring.csv", spring), stiffness, 0.03);
   EXPECT_THAT(guess_experiment({test_file("brief.csv", brief)}, "."), HasSubstr("sliding_spring"));
   EXPECT_THAT(guess_experiment({test_file("cushions.csv", cushions)}, "."),
               Not(HasSubstr("sliding_spring")));
@@ -380,12 +385,8 @@ TEST(Guess, NoiseIsNoSpring) {
   }
   EXPECT_THAT(guess_experiment({test_file("white.csv", white)}, "."),
               Not(HasSubstr("sliding_spring")));
-  const Settings guessed =
-      settings_in(guess_experiment({test_file("rests.csv", seismometer)}, "."));
-  const std::vector<Settings> effects = guessed.tables("disturbance");
-  ASSERT_EQ(effects.size(), 1U);
   const double stiffness = omega_rad_s * omega_rad_s + damping_1_s * damping_1_s;
-  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, 0.1 * stiffness);
+  expect_spring(test_file("rests.csv", seismometer), stiffness, 0.1);
 }
 
 // A lost frame is eight times as far away as the spring reaches.
@@ -397,11 +398,7 @@ TEST(Guess, OneLostFrameDoesNotHideASpring) {
     const double t = 0.1 * i;
     text += printed("%.1f,%.5f\n", t, i == 40 ? 0.4 : 0.05 * std::cos(omega_rad_s * t) + noise());
   }
-  const Settings guessed = settings_in(guess_experiment({test_file("lost.csv", text)}, "."));
-  const std::vector<Settings> effects = guessed.tables("disturbance");
-  ASSERT_EQ(effects.size(), 1U);
-  constexpr double stiffness = omega_rad_s * omega_rad_s;
-  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, 0.1 * stiffness);
+  expect_spring(test_file("lost.csv", text), omega_rad_s * omega_rad_s, 0.1);
 }
 
 // Counts of an encoder. At 14.5 counts per reading, the rounding errors alternate. Noise of 0.6

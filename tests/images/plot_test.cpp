@@ -169,17 +169,6 @@ TEST(PlotPicture, DrawsAConstantAcrossTheMiddle) {
   EXPECT_EQ(pixels_of_colour(picture, blue, picture.height * 2 / 3, picture.height), 0);
 }
 
-TEST(PlotPicture, LeavesGapsWhereNothingCanBeShown) {
-  Plot plot = constant_plot();
-  plot.curves[0].x = {0.0, 0.25, 0.5, 0.75, 1.0};
-  plot.curves[0].y = {5.0, 5.0, std::nan(""), 5.0, 5.0};
-  const Picture whole = plot_picture(constant_plot(), {});
-  const Picture gap = plot_picture(plot, {});
-  const double ratio = static_cast<double>(pixels_of_colour(gap, blue, 0, gap.height)) /
-                       pixels_of_colour(whole, blue, 0, whole.height);
-  EXPECT_NEAR(ratio, 0.5, 0.02);
-}
-
 // Heights as the values, and clear of the frame on both sides.
 TEST(PlotPicture, DrawsBarsFromZeroInsideTheFrame) {
   Plot plot = constant_plot();
@@ -244,32 +233,6 @@ TEST(PlotPicture, SurvivesEveryDegeneratePlot) {
     EXPECT_GT(plot_picture(plot, {}).height, 100);
     EXPECT_THAT(svg_of(plot, {}), ::testing::HasSubstr("</svg>"));
   }
-}
-
-TEST(PlotSvg, StaysSmallForLongHistories) {
-  Plot plot = constant_plot();
-  for (int i = 0; i < 300000; ++i) {
-    plot.curves[0].x.push_back(1.0 + i);
-    plot.curves[0].y.push_back(std::sin(1e-4 * i) + 0.01 * (i % 7));
-  }
-  EXPECT_LT(svg_of(plot, {}).size(), 300000u);
-}
-
-TEST(PlotHtml, KeepsASpikeThatOneOfAHundredThousandSamplesHolds) {
-  Plot plot;
-  Plot::Curve line;
-  for (int i = 0; i < 100000; ++i) {
-    line.x.push_back(i);
-    line.y.push_back(i == 54321 ? 1.0 : 0.0);
-  }
-  plot.curves = {line};
-  const auto drawn = paths_of(svg_of(plot_html(plot)), "stroke", blue).at(0);
-  EXPECT_LT(drawn.size(), 5000u);
-  const auto [top, foot] =
-      std::ranges::minmax_element(drawn, {}, [](const auto& p) { return p.second; });
-  const PlotLayout layout = plot_layout(plot, {.right = html_chart_width, .first_height = 160.0});
-  const double scale = layout.panels[0].y.fraction(1.0) - layout.panels[0].y.fraction(0.0);
-  EXPECT_NEAR(foot->second - top->second, 160.0 * scale, 0.2);
 }
 
 TEST(PlotHtml, BreaksTheLineAtAGap) {
