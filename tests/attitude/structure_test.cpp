@@ -29,12 +29,6 @@ MovingMass usual_mass() {
           .step_angle_rad = 1.8 * degree_rad};
 }
 
-TEST(MovingMasses, ReproduceThePaper) {
-  EXPECT_NEAR(com_resolution_m(usual_mass(), 7.0), 1.79e-7, 0.005e-7);
-  EXPECT_NEAR(horizontal_rounding_torque_N_m(usual_mass(), 0.0, g), 1.23e-5, 0.005e-5);
-  EXPECT_NEAR(horizontal_rounding_torque_N_m(usual_mass(), pi / 2, g), 0.0, 1e-20);
-}
-
 // A full turn of the screw moves the mass by its lead.
 TEST(MovingMasses, TurnOfTheScrewIsOneLead) {
   MovingMass mass = usual_mass();

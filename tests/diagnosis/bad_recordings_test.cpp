@@ -51,11 +51,6 @@ TEST(BadRecording, WithHardlyAnyAttitudeIsRefused) {
   EXPECT_EQ(complaint_of(repeated_row("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 20)), "");
 }
 
-TEST(BadRecording, QuaternionsWithoutLengthAreNoAttitude) {
-  EXPECT_THAT(complaint_of(repeated_row("t_s,q_w,q_x,q_y,q_z", "0,0,0,0", 200)),
-              testing::HasSubstr("0 complete"));
-}
-
 // A clock that was set to another epoch while it recorded; a pause as long as what was recorded is
 // none.
 TEST(BadRecording, ClockJumpsAreReportedWithTheirTimes) {

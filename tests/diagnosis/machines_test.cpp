@@ -397,33 +397,6 @@ TEST(Machines, ADragHasNoRivalsInAHeadingThatNeverChanges) {
   expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", c, 0.0);
 }
 
-// θ = A e^(−c t/2) cos(ω t), ω² = k − c²/4, its rate alone: the angle to which the line pulls back
-// is unknown.
-TEST(Machines, ATwistedLineIsFoundByTheRateAlone) {
-  constexpr double k = 0.16, c = 0.012, largest_rad = 2.5, noise_rad_s = 0.003;
-  constexpr int recordings = 6;
-  const double omega = std::sqrt(k - 0.25 * c * c);
-  const std::vector<double> rate_rad_s = sampled(0.1, 2000, [&](double t) {
-    return -largest_rad * std::exp(-0.5 * c * t) *
-           (0.5 * c * std::cos(omega * t) + omega * std::sin(omega * t));
-  });
-  int right = 0;
-  for (unsigned seed = 31; seed < 31 + recordings; ++seed) {
-    const Channel rate = noisy("rate_rad_s", rate_rad_s, noise_rad_s, seed);
-    const Diagnosis d =
-        diagnosed(machine("[platform]\ntopology = \"one_axis\"\naxis = \"z\"\n"), 0.1, {rate});
-    std::vector<std::string> kinds = kinds_of(d);
-    std::ranges::sort(kinds);
-    if (kinds != std::vector<std::string>{"bearing_drag", "tether"}) continue;
-    ++right;
-    EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
-    expect_near_truth(d, "tether", "stiffness_N_m_per_rad", k, 0.0);
-    expect_near_truth(d, "bearing_drag", "coefficient_N_m_s", c, 0.0);
-  }
-  // One may end in another minimum, where an appendage damps the swing.
-  EXPECT_GE(right, recordings - 1);
-}
-
 // The scatter of moving channels, not of resting ones, and no less than the step.
 TEST(Machines, AnEncoderAtRestDoesNotDetermineItsNoise) {
   Platform axle;

@@ -4,7 +4,9 @@
 #include <random>
 #include <regex>
 
+#include "core/text/format.h"
 #include "images/drawing/curves.h"
+#include "images/drawing/page_layout.h"
 #include "images/drawing/plot.h"
 #include "tests/images/sample_product.h"
 
@@ -167,17 +169,6 @@ TEST(PlotPicture, DrawsAConstantAcrossTheMiddle) {
   EXPECT_EQ(pixels_of_colour(picture, blue, picture.height * 2 / 3, picture.height), 0);
 }
 
-TEST(PlotPicture, LeavesGapsWhereNothingCanBeShown) {
-  Plot plot = constant_plot();
-  plot.curves[0].x = {0.0, 0.25, 0.5, 0.75, 1.0};
-  plot.curves[0].y = {5.0, 5.0, std::nan(""), 5.0, 5.0};
-  const Picture whole = page_of(constant_plot(), {}).pixels();
-  const Picture gap = page_of(plot, {}).pixels();
-  const double ratio = static_cast<double>(pixels_of_colour(gap, blue, 0, gap.height)) /
-                       pixels_of_colour(whole, blue, 0, whole.height);
-  EXPECT_NEAR(ratio, 0.5, 0.02);
-}
-
 // Heights as the values, and clear of the frame on both sides.
 TEST(PlotPicture, DrawsBarsFromZeroInsideTheFrame) {
   Plot plot = constant_plot();
@@ -242,32 +233,6 @@ TEST(PlotPicture, SurvivesEveryDegeneratePlot) {
     EXPECT_GT(page_of(plot, {}).pixels().height, 100);
     EXPECT_THAT(page_of(plot, {}).svg(), ::testing::HasSubstr("</svg>"));
   }
-}
-
-TEST(PlotSvg, StaysSmallForLongHistories) {
-  Plot plot = constant_plot();
-  for (int i = 0; i < 300000; ++i) {
-    plot.curves[0].x.push_back(1.0 + i);
-    plot.curves[0].y.push_back(std::sin(1e-4 * i) + 0.01 * (i % 7));
-  }
-  EXPECT_LT(page_of(plot, {}).svg().size(), 300000u);
-}
-
-TEST(PlotHtml, KeepsASpikeThatOneOfAHundredThousandSamplesHolds) {
-  Plot plot;
-  Plot::Curve line;
-  for (int i = 0; i < 100000; ++i) {
-    line.x.push_back(i);
-    line.y.push_back(i == 54321 ? 1.0 : 0.0);
-  }
-  plot.curves = {line};
-  const auto drawn = paths_of(svg_of(plot_html(plot)), "stroke", blue).at(0);
-  EXPECT_LT(drawn.size(), 5000u);
-  const auto [top, foot] =
-      std::ranges::minmax_element(drawn, {}, [](const auto& p) { return p.second; });
-  const PlotLayout layout = plot_layout(plot, {.right = html_chart_width, .first_height = 160.0});
-  const double scale = layout.panels[0].y.fraction(1.0) - layout.panels[0].y.fraction(0.0);
-  EXPECT_NEAR(foot->second - top->second, 160.0 * scale, 0.2);
 }
 
 TEST(PlotHtml, BreaksTheLineAtAGap) {
@@ -428,6 +393,41 @@ TEST(Styles, PaperHasNoTitleAndRelativelyLargerLetters) {
   EXPECT_THAT(paper, ::testing::HasSubstr("font-size=\"10.50\""));
   const Picture slide = page_of(plot, {}, PictureStyle::slide).pixels();
   EXPECT_GT(slide.width, page_of(plot, {}).pixels().width);
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  std::erase(text, ' ');
+  return text;
+}
+
+TEST(FittedText, NeverIsWiderThanItsRoom) {
+  std::mt19937 generator(11);
+  for (int i = 0; i < 300; ++i) {
+    std::string text;
+    for (unsigned n = generator() % 60; n > 0; --n) text += generator() % 6 == 0 ? " " : "µé";
+    const double width = 40.0 + generator() % 200;
+    const TextBlock block = fitted_text(text, width, {.size = 14.0}, 9.0, 3);
+    EXPECT_LE(block.lines.size(), 3u);
+    for (const std::string& line : block.lines) {
+      EXPECT_LE(text_width(line, block.style), width + 1e-9) << line;
+      EXPECT_EQ(clean_text(line), line) << "a character was cut in two";
+    }
+    const bool shortened = block.lines.back().ends_with("…");
+    EXPECT_TRUE(shortened || joined(block.lines) == joined({text}));
+  }
+}
+
+TEST(FittedText, ShrinksBeforeItShortens) {
+  const std::string text = "Irradiance on the solar array of the platform";
+  const TextStyle style{.size = 15.0};
+  const double exact = text_width(text, style);
+  EXPECT_EQ(fitted_text(text, exact, style, 8.0, 1).style.size, 15.0);
+  const TextBlock smaller = fitted_text(text, 0.7 * exact, style, 8.0, 1);
+  EXPECT_LT(smaller.style.size, 15.0);
+  EXPECT_EQ(smaller.lines, std::vector<std::string>{text});
+  EXPECT_TRUE(fitted_text(text, 0.3 * exact, style, 8.0, 1).lines[0].ends_with("…"));
 }
 
 }  // namespace

@@ -49,15 +49,6 @@ TEST(BrdfFile, NamesTheLineOfTheMistake) {
   EXPECT_THAT(brdf_error("# nothing\n"), HasSubstr("scan.csv: found no rows"));
 }
 
-TEST(BrdfFile, EveryTruncationIsReadOrRefused) {
-  for (size_t length = 0; length < small_table.size(); ++length) {
-    try {
-      read_brdf(small_table.substr(0, length), "cut");
-    } catch (const InputError&) {
-    }
-  }
-}
-
 Settings material_with(SettingsNode::Table table) {
   table["name"] = {"paint"};
   return test::settings_of(std::move(table), "material[0]");

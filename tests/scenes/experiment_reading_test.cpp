@@ -63,27 +63,6 @@ TEST(Experiment, CentreOfRotationBecomesTheOrigin) {
             as_drawn.beams[7].lab_from_emitter.translation_m);
 }
 
-TEST(Experiment, EveryCommittedOneIsRead) {
-  int found = 0;
-  for (const auto& folder : std::filesystem::directory_iterator(scenes)) {
-    if (!folder.is_directory()) continue;
-    for (const auto& file : std::filesystem::directory_iterator(folder)) {
-      if (file.path().extension() != ".toml" || file.path().filename() == "parameters.toml") {
-        continue;
-      }
-      const ExperimentFile read = read_experiment_file(file.path());
-      const bool is_for_a_camera_alone = read.sources.empty() && read.settings.has("platform");
-      if (!read.scene_file || is_for_a_camera_alone) continue;  // without light
-      ++found;
-      EXPECT_NO_THROW({
-        const Experiment experiment = resolve_experiment(read_experiment_file(file.path()));
-        EXPECT_TRUE(experiment.flow || !experiment.receivers.empty()) << file.path();
-      }) << file.path();
-    }
-  }
-  EXPECT_GE(found, 5);
-}
-
 TEST(Experiment, OverridesReachSourcesReceiversAndOptions) {
   const std::vector<std::string> overrides = {"source[0].total_power_W=4.9",
                                               "receiver[0].name=cells", "attitude.tilt_deg=30",

@@ -68,23 +68,5 @@ TEST(IesLamp, IsFoundBesideTheExperimentAndHashedAmongItsInputs) {
                InputError);
 }
 
-TEST(IesLamp, PowerOnASquareMatchesClosedForm) {
-  const std::vector<Beam> beams = lamp_over_origin(lambert_file("ies_on_a_square").parent_path());
-  ASSERT_EQ(beams.size(), 1u);
-  for (const double half : {0.1, 0.5, 2.0}) {
-    const TraceableScene traceable(fixtures::scene_of_part(
-        fixtures::rectangle(Vec3::Zero(), Vec3(2 * half, 0, 0), Vec3(0, 2 * half, 0)),
-        grey_surface("black", 0, 0), "square"));
-    const Estimate power =
-        trace(traceable, {}, beams, {}, {.rays = 1 << 21}).power_balance.absorbed_W;
-    const double exact = 2.0 * lambert_on_square(half);
-    EXPECT_LE(std::abs(power.value - exact), 4 * power.standard_error) << half;
-    EXPECT_LE(std::abs(power.value - exact), 2e-4) << half;
-    // As if the intensity were even over the half sphere: the solid angle of the square.
-    const double mistaken = 2.0 * 4.0 * std::asin(half * half / (1.0 + half * half)) / (2.0 * pi);
-    EXPECT_GT(std::abs(power.value - mistaken), 10 * power.standard_error) << half;
-  }
-}
-
 }  // namespace
 }  // namespace photorque

@@ -329,22 +329,6 @@ TEST_F(ArrayCommand, ASheetWithStandardAndOperatingConditionsIsRead) {
   EXPECT_NEAR(ideality[0], ideality[1], 1e-4 * ideality[1]);
 }
 
-TEST_F(ArrayCommand, ACompressedCurveIsTheSameCurve) {
-  std::string rows = "voltage_V,current_A\n";
-  for (int i = 0; i <= 60; ++i) {
-    const double volt = 0.01 * i;
-    rows +=
-        std::to_string(volt) + "," + std::to_string(1.0 - 1e-10 * std::exp(volt / 0.0267)) + "\n";
-  }
-  write("plain.csv", rows);
-  write("packed.csv.gz", gzip(rows));
-  std::vector<std::string> outputs;
-  for (const char* file : {"plain.csv", "packed.csv.gz"}) {
-    outputs.push_back(fit(std::string("curves = [\"") + file + "\"]\n").out);
-  }
-  EXPECT_EQ(outputs[0], outputs[1]);
-}
-
 TEST_F(ArrayCommand, ALeakThatDoesNotShowIsALowerLimit) {
   write("tight.csv", lit_curve(1.0));
   const Outcome got = fit("curves = [\"tight.csv\"]\n");
