@@ -53,9 +53,10 @@ std::vector<double> instants(const std::vector<RecordingSeries>& recordings,
   return at;
 }
 
-// Almost the largest of some lengths: the 99th percentile, without outliers.
+// Almost the largest magnitude of some numbers: the 99th percentile, without outliers.
 double nearly_largest(std::vector<double> lengths) {
   std::erase_if(lengths, [](double length) { return !std::isfinite(length); });
+  for (double& length : lengths) length = std::abs(length);
   if (lengths.empty()) return 0.0;
   const auto at =
       lengths.begin() + static_cast<ptrdiff_t>(0.99 * static_cast<double>(lengths.size() - 1));
@@ -196,8 +197,8 @@ class MotionStage {
       for (int k = 0; k < 3; ++k) {
         const ChannelSeries* channel = series_channel(recording, rate_channel(k));
         if (channel == nullptr) continue;
-        largest = std::max(largest, nearly_largest(absolute(channel->residual_before)));
-        if (found_) largest = std::max(largest, nearly_largest(absolute(channel->residual_after)));
+        largest = std::max(largest, nearly_largest(channel->residual_before));
+        if (found_) largest = std::max(largest, nearly_largest(channel->residual_after));
       }
     }
     stage_.bodies = {"platform"};
@@ -206,11 +207,6 @@ class MotionStage {
     add_sentence(stage_.remark,
                  "The recordings show no attitude: the body is drawn in its own "
                  "axes, with its rate as an arrow.");
-  }
-
-  static std::vector<double> absolute(std::vector<double> values) {
-    for (double& value : values) value = std::abs(value);
-    return values;
   }
 
   void add_difference_arrows(const std::string& unit, double largest) {

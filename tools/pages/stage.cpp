@@ -117,11 +117,6 @@ std::vector<StageLamp> lamps_of(const std::vector<Beam>& beams, double radius_m)
   return lamps;
 }
 
-StageCamera camera_of(const Experiment& experiment) {
-  return {experiment.camera.position_m, experiment.camera.target_m,
-          experiment.camera.field_of_view_rad / degree_rad};
-}
-
 }  // namespace
 
 Rgb reflectance_grey(const OpticalSurface& surface) {
@@ -139,7 +134,8 @@ SceneStage stage_of(const OpticalRun& run, StageMaps maps) {
   }
   stage.paintings = paintings_of(experiment, maps);
   stage.lamps = lamps_of(experiment.beams, stage.radius_m);
-  stage.camera = camera_of(experiment);
+  stage.camera = {experiment.camera.position_m, experiment.camera.target_m,
+                  experiment.camera.field_of_view_rad / degree_rad};
   stage.arrows = {{"force of light", "N", StageArrow::Kind::force},
                   {"torque of light", "N m", StageArrow::Kind::torque}};
   return stage;
