@@ -45,10 +45,14 @@ struct DisturbanceKind {
   std::vector<Key> keys = {};
 };
 
-// DisturbanceKind::read for a law that needs only its keys.
-template <class LawType, Stage stage, const auto&... keys>
-Disturbance read_law([[maybe_unused]] const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<LawType>({parameters_of(settings, keys)...}, stage);
+// A kind whose law needs only these keys, with `read` and `keys` added.
+template <class LawType, Stage stage, const auto&... law_keys>
+DisturbanceKind kind_of_law(DisturbanceKind kind) {
+  kind.read = []([[maybe_unused]] const Settings& settings, const DisturbanceContext&) {
+    return make_disturbance<LawType>({parameters_of(settings, law_keys)...}, stage);
+  };
+  kind.keys = {Key(law_keys)...};
+  return kind;
 }
 
 // All kinds, generated from CMakeLists.txt.

@@ -81,8 +81,8 @@ TimeSeries read_wanted_field_T(const Settings& settings) {
 }
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<HelmholtzCage>({scalar_parameter(settings, gain_error)},
-                                         Stage::conditions, {}, read_wanted_field_T(settings));
+  return make_disturbance<HelmholtzCage>({parameters_of(settings, gain_error)}, Stage::conditions,
+                                         {}, read_wanted_field_T(settings));
 }
 
 }  // namespace

@@ -29,9 +29,9 @@ struct AxisGain final : LawOf<AxisGain> {
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   if (count_as_written(settings, common_gain.name) > 0) {
-    return make_disturbance<AxisGain>({vector_parameter(settings, axis_gain)});
+    return make_disturbance<AxisGain>({parameters_of(settings, axis_gain)});
   }
-  return make_disturbance<CommonGain>({scalar_parameter(settings, common_gain)});
+  return make_disturbance<CommonGain>({parameters_of(settings, common_gain)});
 }
 
 }  // namespace

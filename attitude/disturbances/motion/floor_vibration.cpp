@@ -114,21 +114,21 @@ Disturbance read_spectrum(const Settings& settings) {
   if (points.size() < 2) throw s.error(key::frequency, "one frequency", "at least two");
   const auto tones = static_cast<int>(s.get(key::tones));
   const auto seed = static_cast<uint64_t>(s.get(key::seed));
-  return make_disturbance<SpectrumVibration>({scalar_parameter(settings, factor)}, Stage::torque,
-                                             {}, tones_of_spectrum(points, tones, seed));
+  return make_disturbance<SpectrumVibration>({parameters_of(settings, factor)}, Stage::torque, {},
+                                             tones_of_spectrum(points, tones, seed));
 }
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   if (settings.has(key::spectrum)) return read_spectrum(settings);
   if (settings.has(key::accelerogram_file)) {
     return make_disturbance<RecordedVibration>(
-        {scalar_parameter(settings, factor)}, Stage::torque, {},
+        {parameters_of(settings, factor)}, Stage::torque, {},
         read_time_series(file_of(settings, key::accelerogram_file),
                          {"acceleration_x_m_s2", "acceleration_y_m_s2", "acceleration_z_m_s2"},
                          TimeSeries::Outside::zero));
   }
-  return make_disturbance<ToneVibration>({vector_parameter(settings, shaking),
-                                          scalar_parameter(settings, frequency),
+  return make_disturbance<ToneVibration>({parameters_of(settings, shaking),
+                                          parameters_of(settings, frequency),
                                           phase_parameter(settings, phase)});
 }
 

@@ -44,9 +44,9 @@ T sinusoid(const T& time_s, const T& frequency_Hz, const T& phase_rad) {
 
 // The parameter `phase` [rad], or phase_deg; 0 if neither is given.
 inline PlacedParameters phase_parameter(const Settings& settings, ScalarKey phase) {
-  return scalar_parameter(settings, settings.has(phase.name)
-                                        ? phase
-                                        : ScalarKey("phase_rad", 0.0, {}, "", phase.first));
+  return parameters_of(settings, settings.has(phase.name)
+                                     ? phase
+                                     : ScalarKey("phase_rad", 0.0, {}, "", phase.first));
 }
 
 }  // namespace photorque

@@ -31,9 +31,9 @@ struct OwnWheels final : TorqueLaw<OwnWheels> {
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   if (count_as_written(settings, common_inertia.name) > 0) {
-    return make_disturbance<OwnWheels>({vector_parameter(settings, axis_inertia)});
+    return make_disturbance<OwnWheels>({parameters_of(settings, axis_inertia)});
   }
-  return make_disturbance<EqualWheels>({scalar_parameter(settings, common_inertia)});
+  return make_disturbance<EqualWheels>({parameters_of(settings, common_inertia)});
 }
 
 }  // namespace
