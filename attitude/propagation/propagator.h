@@ -54,7 +54,7 @@ struct Event {
 
 // Event "tilt_stop", which ends the run: the tilt of body z from lab z reaches `limit_rad`.
 EventFunction tilt_event(double limit_rad);
-// Event "battery_empty", which ends the run: the charge drawn reaches `capacity_C`.
+// Event "battery_empty": the charge drawn reaches `capacity_C`. The run continues without power.
 EventFunction battery_empty_event(double capacity_C);
 // Events "eclipse_begins" and "eclipse_ends": the illumination falls below or rises above one half.
 // `dynamics` must outlive the function.
