@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "attitude/estimation/fit.h"
-#include "attitude/estimation/starts.h"
 #include "core/errors.h"
 
 namespace photorque {

@@ -495,13 +495,13 @@ TEST(Machines, ResidualsCountAsCorrelatedNoise) {
     seen.gyro_rows.emplace_back(0.0, 0.0, 1.0);
   }
   NoiseLevels own;
-  own.gyro_rad_s = Vec3::Constant(0.5);
+  own.set_levels(3, Vec3::Constant(0.5));
   const NoiseLevels noise = with_discrepancy({left}, {seen}, own, Remainder::correlated);
   // 60000 readings hold about 600 independent numbers: 4 % of the variance, 8 % of the time.
-  EXPECT_NEAR(noise.gyro_rad_s[2], std::sqrt(5.0), 0.15 * std::sqrt(5.0));
-  EXPECT_NEAR(noise.gyro_colour.fraction[2], 0.8, 0.05);
-  EXPECT_NEAR(noise.gyro_colour.time_s[2], time_s, 0.35 * time_s);
-  EXPECT_EQ(noise.gyro_rad_s[0], 0.5);
+  EXPECT_NEAR(noise.of(5).level, std::sqrt(5.0), 0.15 * std::sqrt(5.0));
+  EXPECT_NEAR(noise.of(5).coloured, 0.8, 0.05);
+  EXPECT_NEAR(noise.of(5).time_s, time_s, 0.35 * time_s);
+  EXPECT_EQ(noise.of(3).level, 0.5);
   EXPECT_FALSE(is_quieter(noise, noise));
   EXPECT_TRUE(is_quieter(own, noise));
 }
@@ -521,12 +521,12 @@ TEST(Machines, WhatIsLeftOfMeansCountsAsTheirNoise) {
     seen.attitude_rows.push_back(0.0);
   }
   NoiseLevels own;
-  own.gyro_rad_s = Vec3::Constant(0.5);
+  own.set_levels(3, Vec3::Constant(0.5));
   std::vector<Observation> runs = {seen};
   // (3 · 1 + 9)/4 = 3.
   for (const Remainder remainder : {Remainder::white, Remainder::correlated}) {
     runs[0].noise = with_discrepancy({left}, runs, own, remainder);
-    EXPECT_NEAR(runs[0].noise.gyro_rad_s[2], 5.0 * std::sqrt(3.0), 0.3);
+    EXPECT_NEAR(runs[0].noise.of(5).level, 5.0 * std::sqrt(3.0), 0.3);
     set_profiles({left}, 4, runs);
     // Four fifths of the mean square in a part, one fifth of that of all.
     EXPECT_NEAR(runs[0].profile.at(0.0), std::sqrt(0.8 / 3.0 + 0.2), 0.02);

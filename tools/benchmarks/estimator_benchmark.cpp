@@ -165,8 +165,8 @@ struct Tabletop {
       const PlatformState& state = truth.states[i];
       Vec3 turn, rate = state.rate_body_rad_s + Vec3(1e-3, -5e-4, 2e-4);
       for (int k = 0; k < 3; ++k) {
-        turn[k] = seen.noise.camera_rad[k] * normal();
-        rate[k] += seen.noise.gyro_rad_s[k] * normal();
+        turn[k] = seen.noise.of(k).level * normal();
+        rate[k] += seen.noise.of(3 + k).level * normal();
       }
       seen.time_s.push_back(times_s[i]);
       seen.attitude.push_back(Quat(Eigen::AngleAxisd(turn.norm(), turn.normalized())) *

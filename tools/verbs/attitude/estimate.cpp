@@ -229,12 +229,12 @@ void print_method(const Console& console, const EstimateRun::Estimated& one) {
 
 void print_consistency(const Console& console, const ConsistencyResult& result) {
   const RunEnsemble& ensemble = result.ensemble;
-  console.heading(std::to_string(ensemble.runs()) + " simulated runs");
-  console.line("  mean NEES: " + band_text(ensemble.band()) + "; within it " +
+  console.heading(std::to_string(ensemble.runs) + " simulated runs");
+  console.line("  mean NEES: " + band_text(ensemble.band) + "; within it " +
                show_percent(result.part_filtered) + " of the rows filtered, " +
                show_percent(result.part_smoothed) + " smoothed (95 % expected)");
-  print_innovations(console, "attitude", ensemble.attitude());
-  print_innovations(console, "gyro", ensemble.gyro());
+  print_innovations(console, "attitude", ensemble.attitude);
+  print_innovations(console, "gyro", ensemble.gyro);
   console.line("  rms error of the smoother over that of the filter: at most " +
                show(result.worst_gain) + " at any row");
 }
