@@ -55,6 +55,16 @@ DisturbanceKind kind_of_law(DisturbanceKind kind) {
   return kind;
 }
 
+// DisturbanceKind::read for a key that takes one number, or one for each body axis, with a law for
+// each case.
+template <class LawOfOne, class LawOfThree, const ScalarKey& key>
+Disturbance read_one_or_three(const Settings& settings, const DisturbanceContext&) {
+  if (count_as_written(settings, key.name) == 0) {
+    return make_disturbance<LawOfOne>({parameters_of(settings, key)});
+  }
+  return make_disturbance<LawOfThree>({parameters_of(settings, VectorKey(key.name))});
+}
+
 // All kinds, generated from CMakeLists.txt.
 std::vector<DisturbanceKind> all_disturbance_kinds();
 // All kinds, created once.

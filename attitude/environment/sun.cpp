@@ -268,9 +268,7 @@ SunPath read_sun(const Settings& settings) {
   if (settings.has(sun_key::table)) {
     const std::filesystem::path path = existing_file(
         settings, sun_key::table, std::filesystem::path(settings.where().file).parent_path());
-    return SunPath::table(
-        read_time_series(path, {"sun_x", "sun_y", "sun_z"}, TimeSeries::Outside::hold),
-        distance_au);
+    return SunPath::table(read_time_series(path, {"sun_x", "sun_y", "sun_z"}), distance_au);
   }
   return SunPath::fixed(distance_au * direction_of(settings, sun_key::direction).normalized());
 }

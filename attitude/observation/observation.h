@@ -24,7 +24,7 @@ struct ChannelNoise {
 };
 
 struct NoiseLevels {
-  // Of one reading of each channel, in the order of recordings/columns.h, SI.
+  // Noise of one reading, by channel (recordings/columns.h), SI.
   std::array<ChannelNoise, channel_count> channel = {};
 
   NoiseLevels() {

@@ -99,8 +99,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   if (!settings.has(key::density_file)) return drag({scale}, MeanDensity{});
   const std::string column = "density_kg_m3";
   return drag({scale}, RecordedDensity{read_time_series(file_of(settings, key::density_file),
-                                                        {column, column, column},
-                                                        TimeSeries::Outside::hold)});
+                                                        {column, column, column})});
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ class HelmholtzCage final : public LawOf<HelmholtzCage> {
 TimeSeries read_wanted_field_T(const Settings& settings) {
   if (settings.has(key::field_file)) {
     return read_time_series(file_of(settings, key::field_file),
-                            {"field_x_T", "field_y_T", "field_z_T"}, TimeSeries::Outside::hold);
+                            {"field_x_T", "field_y_T", "field_z_T"});
   }
   if (settings.has(key::orbit)) {
     const Settings s = settings.get(key::orbit);

@@ -65,8 +65,8 @@ class SpectrumVibration final : public TorqueLaw<SpectrumVibration> {
     Vec3Of<T> sum = Vec3Of<T>::Constant(T(0.0));
     for (const VibrationTone& tone : tones_) {
       for (int k = 0; k < 3; ++k) {
-        sum[k] += tone.amplitude_lab_m_s2[k] *
-                  sinusoid(now.time_s, T(tone.frequency_Hz), T(tone.phase_rad[k]));
+        sum[k] +=
+            tone.amplitude_m_s2 * sinusoid(now.time_s, T(tone.frequency_Hz), T(tone.phase_rad[k]));
       }
     }
     const Vec3Of<T> acceleration_m_s2 = own[factor] * sum;
@@ -106,7 +106,7 @@ Disturbance read_spectrum(const Settings& settings) {
   }
   std::vector<SpectrumPoint> points;
   for (size_t i = 0; i < frequency_Hz.size(); ++i) {
-    points.push_back({frequency_Hz[i], Vec3::Constant(density_m2_s3[i])});
+    points.push_back({frequency_Hz[i], density_m2_s3[i]});
     if (i > 0 && !(frequency_Hz[i] > frequency_Hz[i - 1])) {
       throw s.error(key::frequency, "frequencies out of order", "rising frequencies");
     }
