@@ -11,7 +11,6 @@
 #include "attitude/propagation/run.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/attitude/effects/scan.h"
-#include "diagnosis/attitude/effects/screen.h"
 #include "diagnosis/attitude/effects/trial.h"
 #include "tests/diagnosis/rigid_body_recording.h"
 
@@ -75,13 +74,13 @@ TEST(Score, PredictsTheGainOfTwoEffects) {
   const Candidates all = all_candidates(nominal_model(), runs);
   const auto named = [&](const std::string& label) {
     const auto at = std::find_if(all.list.begin(), all.list.end(),
-                                 [&](const Candidate& c) { return c.label == label; });
+                                 [&](const Candidate& c) { return c.name == label; });
     return static_cast<size_t>(at - all.list.begin());
   };
   const size_t dipole = named("magnetic_dipole"), draught = named("room_draft");
   const Trial before = nominal_trial(nominal, all);
-  const inference::LinearProblem problem = linear_problem(
-      before, all, {{dipole, {all[dipole].start}}, {draught, {all[draught].start}}}, runs);
+  const inference::LinearProblem problem = all.linear_problem(
+      before, {{dipole, {all[dipole].start}}, {draught, {all[draught].start}}}, runs);
   const std::vector<Score> alone =
       score(nominal, runs, {{{all[dipole].start}}, {{all[draught].start}}});
   std::map<std::vector<size_t>, inference::Subset> predicted;
@@ -92,8 +91,8 @@ TEST(Score, PredictsTheGainOfTwoEffects) {
   EXPECT_NEAR(predicted[{1}].gain, alone[1].gain, 1e-6 * alone[1].gain);
   EXPECT_NEAR(predicted[{}].gain, 0.0, 1e-9);
 
-  const Trial one = extend(nominal_trial(nominal, all), all, dipole, {all[dipole].start}, runs);
-  const Trial both = extend(one, all, draught, {all[draught].start}, runs);
+  const Trial one = all.extend(nominal_trial(nominal, all), dipole, {all[dipole].start}, runs);
+  const Trial both = all.extend(one, draught, {all[draught].start}, runs);
   const double gained = nominal.chi2 - both.fit.chi2;
   EXPECT_NEAR((predicted[{0, 1}].gain), gained, 0.05 * gained);
   EXPECT_GT(gained, nominal.chi2 - one.fit.chi2 + 20.0);
@@ -103,7 +102,7 @@ TEST(Score, PredictsTheGainOfTwoEffects) {
               0.05 * (both.log_evidence - one.log_evidence) + 1.0);
 
   // About the fit of both, this form predicts the cost of removing one of them.
-  const inference::LinearProblem about = linear_problem(both, all, terms_of(both), runs);
+  const inference::LinearProblem about = all.linear_problem(both, all.terms_of(both), runs);
   for (const inference::Subset& s : inference::best_subsets(about, 2, {})) {
     if (s.groups.size() == 2) {
       EXPECT_NEAR(s.gain, 0.0, 0.1);
@@ -159,7 +158,7 @@ TEST(Scan, StartsAnAppendageWithinItsResonance) {
   for (int channel = 0; channel < 6; ++channel) seen.noise.set(channel, {1e-7, 0.0, 0.0});
   const std::vector<Observation> runs = {seen};
   const Candidates all = all_candidates(nominal, runs);
-  const auto mode = std::ranges::find(all.list, "flexible_mode", &Candidate::label);
+  const auto mode = std::ranges::find(all.list, "flexible_mode", &Candidate::name);
   ASSERT_NE(mode, all.list.end());
   const std::vector<Start> starts =
       starts_of(*mode, nominal_trial(fit_nominal(nominal, runs), all), runs, runs, {}, {});
@@ -189,8 +188,8 @@ TEST(Trial, AThirdOfTheInertiaIsNoExplanation) {
   FitSettings settings;
   settings.max_iterations = 60;
   const Trial trial =
-      extend(nominal_trial(fit_nominal(nominal, runs), all), all,
-             static_cast<size_t>(error - all.list.begin()), {error->start}, runs, settings);
+      all.extend(nominal_trial(fit_nominal(nominal, runs), all),
+                 static_cast<size_t>(error - all.list.begin()), {error->start}, runs, settings);
   EXPECT_THAT(trial.objection, testing::HasSubstr("inertia would change by"));
 }
 
@@ -207,13 +206,13 @@ TEST(Trial, NumbersBeyondPhysicsAreRefitted) {
     const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
     const Candidates all = all_candidates(nominal_model(), runs);
     const auto named = [&](const std::string& label) {
-      const auto at = std::ranges::find(all.list, label, &Candidate::label);
+      const auto at = std::ranges::find(all.list, label, &Candidate::name);
       return static_cast<size_t>(at - all.list.begin());
     };
     const size_t draught = named("room_draft"), cable = named("tether");
-    Trial trial = extend(nominal_trial(fit_nominal(nominal_model(), runs), all), all, draught,
-                         {all[draught].start}, runs);
-    if (with_cable) trial = extend(trial, all, cable, {all[cable].start}, runs);
+    Trial trial = all.extend(nominal_trial(fit_nominal(nominal_model(), runs), all), draught,
+                             {all[draught].start}, runs);
+    if (with_cable) trial = all.extend(trial, cable, {all[cable].start}, runs);
     return std::pair(trial, within_physics(trial, all, runs));
   };
   const auto value = [](const Trial& t, size_t candidate, size_t p) {
@@ -255,9 +254,9 @@ TEST(Trial, CompliancesGoBackWithinPhysicsTogether) {
     const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
     const Candidates all = all_candidates(nominal_model(), runs);
     const auto sag = static_cast<size_t>(
-        std::ranges::find(all.list, "elastic_sag", &Candidate::label) - all.list.begin());
-    const Trial fitted = extend(nominal_trial(fit_nominal(nominal_model(), runs), all), all, sag,
-                                {all[sag].start}, runs);
+        std::ranges::find(all.list, "elastic_sag", &Candidate::name) - all.list.begin());
+    const Trial fitted = all.extend(nominal_trial(fit_nominal(nominal_model(), runs), all), sag,
+                                    {all[sag].start}, runs);
     const auto values = [](const Trial& t) {
       const auto& p = t.fit.best.model.disturbances.at(t.disturbances.at(0)).parameters;
       return Vec3(p[0].value, p[1].value, p[2].value);
