@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/holdout.h"
+#include "diagnosis/attitude/findings.h"
 
 #include <algorithm>
 #include <cmath>

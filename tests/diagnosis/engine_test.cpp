@@ -11,7 +11,6 @@
 #include "attitude/propagation/run.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/attitude/effects/scan.h"
-#include "diagnosis/attitude/effects/screen.h"
 #include "diagnosis/attitude/effects/trial.h"
 #include "diagnosis/attitude/findings.h"
 #include "tests/diagnosis/rigid_body_recording.h"
@@ -82,8 +81,8 @@ TEST(Score, PredictsTheGainOfTwoEffects) {
   const Candidates all = all_candidates(nominal_model(), runs);
   const size_t dipole = place_of("magnetic_dipole", all), draught = place_of("room_draft", all);
   const Trial before = nominal_trial(nominal, all);
-  const inference::LinearProblem problem = linear_problem(
-      before, all, {{dipole, {all[dipole].start}}, {draught, {all[draught].start}}}, runs);
+  const inference::LinearProblem problem = all.linear_problem(
+      before, {{dipole, {all[dipole].start}}, {draught, {all[draught].start}}}, runs);
   const std::vector<Score> alone =
       score(nominal, runs, {{{all[dipole].start}}, {{all[draught].start}}});
   std::map<std::vector<size_t>, inference::Subset> predicted;
@@ -94,8 +93,8 @@ TEST(Score, PredictsTheGainOfTwoEffects) {
   EXPECT_NEAR(predicted[{1}].gain, alone[1].gain, 1e-6 * alone[1].gain);
   EXPECT_NEAR(predicted[{}].gain, 0.0, 1e-9);
 
-  const Trial one = extend(nominal_trial(nominal, all), all, dipole, {all[dipole].start}, runs);
-  const Trial both = extend(one, all, draught, {all[draught].start}, runs);
+  const Trial one = all.extend(nominal_trial(nominal, all), dipole, {all[dipole].start}, runs);
+  const Trial both = all.extend(one, draught, {all[draught].start}, runs);
   const double gained = nominal.chi2 - both.fit.chi2;
   EXPECT_NEAR((predicted[{0, 1}].gain), gained, 0.05 * gained);
   EXPECT_GT(gained, nominal.chi2 - one.fit.chi2 + 20.0);
@@ -105,7 +104,7 @@ TEST(Score, PredictsTheGainOfTwoEffects) {
               0.05 * (both.log_evidence - one.log_evidence) + 1.0);
 
   // About the fit of both, this form predicts the cost of removing one of them.
-  const inference::LinearProblem about = linear_problem(both, all, terms_of(both), runs);
+  const inference::LinearProblem about = all.linear_problem(both, all.terms_of(both), runs);
   for (const inference::Subset& s : inference::best_subsets(about, 2, {})) {
     if (s.groups.size() == 2) {
       EXPECT_NEAR(s.gain, 0.0, 0.1);
@@ -186,8 +185,8 @@ TEST(Trial, AThirdOfTheInertiaIsNoExplanation) {
   const size_t error = place_of("inertia_error", all);
   FitSettings settings;
   settings.max_iterations = 60;
-  const Trial trial = extend(nominal_trial(fit_nominal(nominal, runs), all), all, error,
-                             {all[error].start}, runs, settings);
+  const Trial trial = all.extend(nominal_trial(fit_nominal(nominal, runs), all), error,
+                                 {all[error].start}, runs, settings);
   EXPECT_THAT(trial.objection, testing::HasSubstr("inertia would change by"));
 }
 
@@ -204,9 +203,9 @@ TEST(Trial, NumbersBeyondPhysicsAreRefitted) {
     const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
     const Candidates all = all_candidates(nominal_model(), runs);
     const size_t draught = place_of("room_draft", all), cable = place_of("tether", all);
-    Trial trial = extend(nominal_trial(fit_nominal(nominal_model(), runs), all), all, draught,
-                         {all[draught].start}, runs);
-    if (with_cable) trial = extend(trial, all, cable, {all[cable].start}, runs);
+    Trial trial = all.extend(nominal_trial(fit_nominal(nominal_model(), runs), all), draught,
+                             {all[draught].start}, runs);
+    if (with_cable) trial = all.extend(trial, cable, {all[cable].start}, runs);
     return std::pair(trial, within_physics(trial, all, runs));
   };
   const auto value = [](const Trial& t, size_t candidate, size_t p) {
@@ -248,8 +247,8 @@ TEST(Trial, CompliancesGoBackWithinPhysicsTogether) {
     const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
     const Candidates all = all_candidates(nominal_model(), runs);
     const size_t sag = place_of("elastic_sag", all);
-    const Trial fitted = extend(nominal_trial(fit_nominal(nominal_model(), runs), all), all, sag,
-                                {all[sag].start}, runs);
+    const Trial fitted = all.extend(nominal_trial(fit_nominal(nominal_model(), runs), all), sag,
+                                    {all[sag].start}, runs);
     const auto values = [](const Trial& t) {
       const auto& p = t.fit.best.model.disturbances.at(t.disturbances.at(0)).parameters;
       return Vec3(p[0].value, p[1].value, p[2].value);

@@ -1,6 +1,6 @@
 // The effect of a swinging appendage on a platform with one axis, against the textbook step
 // response of a damped oscillator.
-#include "diagnosis/attitude/effects/flexible_mode.h"
+#include "diagnosis/attitude/effects/scan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "diagnosis/light/model/obstacles.h"
+#include "diagnosis/light/model/illumination.h"
 
 #include <algorithm>
 #include <cmath>
@@ -204,12 +204,6 @@ Obstacles::Obstacles(const LightLab& lab, const std::vector<ShadowBox>& boxes,
     b.radius = 0.5 * (box.high_m - box.low_m).norm();
     in_body_.push_back(b);
   }
-}
-
-bool Obstacles::meets_boxes(const Vec3& point, const Vec3& lamp, double radius_m) const {
-  return std::ranges::any_of(in_body_, [&](const BodyBox& box) {
-    return may_reach(box.centre, box.radius + radius_m, point, lamp);
-  });
 }
 
 Obstacles::Open Obstacles::visible(const Vec3& point, const Vec3& lamp, const Vec3& side,
