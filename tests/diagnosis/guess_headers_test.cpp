@@ -49,15 +49,16 @@ class Headers : public testing::Test {
   }
 };
 
-struct Expected {
-  const char *header, *stem;
+struct Meaning {
+  const char* stem;
   double to_SI;
-
-  void expect_of(const std::string& channel) const {
-    EXPECT_EQ(unit_of_key(channel).stem, stem) << header;
-    EXPECT_NEAR(unit_of_key(channel).to_SI, to_SI, 1e-12) << header;
-  }
+  std::vector<const char*> headers;
 };
+
+void expect_meaning(const Meaning& meaning, const char* header, const std::string& channel) {
+  EXPECT_EQ(unit_of_key(channel).stem, meaning.stem) << header;
+  EXPECT_NEAR(unit_of_key(channel).to_SI, meaning.to_SI, 1e-12) << header;
+}
 
 constexpr double turn = 2.0 * pi, degree = pi / 180.0;
 

@@ -101,6 +101,22 @@ TEST(Experiment, InputsNameEveryFileAndOverride) {
   EXPECT_THAT(experiment.inputs, Contains(Pair("--set trace.seed=7", testing::SizeIs(32))));
 }
 
+TEST(Experiment, LampFilesBesideItAreFoundAndHashedAmongItsInputs) {
+  const std::string lamp = read_file(outside::reference_data("beams/gauss3.ies"));
+  const auto toml =
+      test_file("lamp.toml", "[scene]\nfile = \"" + (scenes / "stasis/stasis.gltf").string() +
+                                 "\"\n[[source]]\nkind = \"ies\"\nfile = \"lamp.ies\"\n"
+                                 "power_W = 3\nwavelength_nm = 730\nposition_m = [0, 0, 2]\n"
+                                 "direction = [0, 0, -1]\n");
+  test_file("lamp.ies", lamp);
+  const Experiment experiment = read_experiment(toml);
+  ASSERT_EQ(experiment.beams.size(), 1u);
+  EXPECT_EQ(experiment.beams[0].emitter->power_W(), 3.0);
+  EXPECT_THAT(experiment.inputs, Contains(Pair("lamp.ies", content_hash(lamp))));
+  EXPECT_THROW(read_experiment(toml, std::vector<std::string>{"source[0].file=other.ies"}),
+               InputError);
+}
+
 TEST(ExperimentFile, TablesOfOthersKeepTheirOwnRecordOfKeys) {
   const ExperimentFile file = read_experiment_file(
       test_file("others.toml",
