@@ -109,11 +109,12 @@ TEST(Experiment, LampFilesBesideItAreFoundAndHashedAmongItsInputs) {
                                  "power_W = 3\nwavelength_nm = 730\nposition_m = [0, 0, 2]\n"
                                  "direction = [0, 0, -1]\n");
   test_file("lamp.ies", lamp);
-  const Experiment experiment = read_experiment(toml);
+  const Experiment experiment = resolve_experiment(read_experiment_file(toml));
   ASSERT_EQ(experiment.beams.size(), 1u);
   EXPECT_EQ(experiment.beams[0].emitter->power_W(), 3.0);
   EXPECT_THAT(experiment.inputs, Contains(Pair("lamp.ies", content_hash(lamp))));
-  EXPECT_THROW(read_experiment(toml, std::vector<std::string>{"source[0].file=other.ies"}),
+  EXPECT_THROW(resolve_experiment(read_experiment_file(
+                   toml, std::vector<std::string>{"source[0].file=other.ies"})),
                InputError);
 }
 
