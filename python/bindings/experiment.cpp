@@ -195,10 +195,11 @@ void bind_experiment(py::module_& module) {
             for (const InputError& mistake : report.mistakes) lines.append(mistake.what());
             return lines;
           },
-          "Errors, one line each: the first one of every table.")
+          "The first error of every table of the experiment, one line each.")
       .def_readonly("notes", &CheckReport::notes, "Assumptions of the readers, one line each.");
   module.def("check", &check_of, py::arg("experiment"),
-             "Reads the experiment as every command does, without running one.");
+             "Reads the experiment and reports its errors and the commands that can run, without "
+             "running one.");
 }
 
 }  // namespace photorque::python

@@ -104,7 +104,7 @@ void bind_flux_map(py::module_& module) {
             return view(grid.area_m2, static_cast<size_t>(grid.height),
                         static_cast<size_t>(grid.width), self);
           },
-          "Area of surface in every bin.")
+          "Area of the surface in every bin [m²].")
       .def_property_readonly(
           "extent",
           [](const FluxMap& map) {
@@ -214,7 +214,7 @@ void bind_render(py::module_& module) {
             const py::gil_scoped_release release;
             return write_render(self, folder).string();
           },
-          py::arg("folder"), "Writes render.png as the program does; gives its path.");
+          py::arg("folder"), "Writes render.png and returns its path.");
   def_traced(module, "render", &run_render,
              "Traces the experiment and returns a picture of the scene, seen from [camera].");
 }
@@ -230,7 +230,7 @@ CellFit fit_cell(const ExperimentHandle& experiment, const py::object& log) {
 
 void bind_cell_fit(py::module_& module) {
   auto type = py::class_<CellFit>(module, "CellFit",
-                                  "Parameters of a cell with their standard errors: its figures.");
+                                  "Fitted parameters of a cell, with standard errors, as figures.");
   add_result(type, "fit-cell");
   module.def("fit_cell", &fit_cell, py::arg("experiment"), py::kw_only(),
              py::arg("log") = py::none(),

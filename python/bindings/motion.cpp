@@ -284,10 +284,10 @@ void bind_motion(py::module_& module) {
       "propagate", &propagate_motion, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,
       py::arg("seed") = py::none(), py::arg("torques") = py::dict(),
       py::arg("progress") = py::none(), py::arg("log") = py::none(),
-      "Propagates the platform through its disturbances, in the light of its scene.\n\n"
-      "`torques`: laws to try out, by name: function(time_s (n,), attitude_wxyz (n, 4), "
-      "rate_body_rad_s (n, 3)) gives torques (n, 3) in N m, body axes. Slow: a law that stays "
-      "belongs into the catalogue.");
+      "Motion of the platform under its disturbances and the light of its scene.\n\n"
+      "`torques`: additional torques by name: function(time_s (n,), attitude_wxyz (n, 4), "
+      "rate_body_rad_s (n, 3)) returns torques (n, 3) [N m] about the centre of rotation, body "
+      "axes.");
 }
 
 }  // namespace photorque::python

@@ -95,9 +95,10 @@ void bind_wrenches(py::module_& module) {
       .def_property_readonly("torque_standard_error_N_m", node_view(&WrenchTable::torque_error_N_m),
                              "Standard error of torque_body_N_m [N m].")
       .def("at", &wrench_between, py::arg("polar_rad"), py::arg("around_rad"),
-           "(force, torque) between the nodes, bilinear. NumericalError outside the grid.")
+           "(force [N], torque [N m]) by bilinear interpolation, body axes. Raises NumericalError "
+           "outside the grid.")
       .def("write_page", &write_page, py::arg("path"),
-           "The run as one HTML page with sliders over the attitudes; gives its path. Of runs with "
+           "Writes one HTML page with sliders over the attitudes; returns its path. Requires "
            "page=True.");
   module.def("torque_map", &torque_map, py::arg("experiment"), py::kw_only(),
              py::arg("threads") = 0, py::arg("seed") = py::none(), py::arg("lamps") = py::list(),

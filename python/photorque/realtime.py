@@ -153,7 +153,7 @@ class Client:
             yield measurement
 
     def command(self, torque_body_N_m: Sequence[float]) -> None:
-        """Sets the torque about the body axes from now on [N m]."""
+        """Sets the torque about the body axes [N m], which acts until the next command."""
         self._last_command = self._send(COMMAND, _COMMAND.pack(*torque_body_N_m))
 
     def close(self) -> None:

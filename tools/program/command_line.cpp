@@ -267,7 +267,8 @@ CommandLine refused(const std::string& mistake, const std::string& verb = "") {
 }  // namespace
 
 CommandLine read_command_line(int argc, char** argv, const std::vector<Verb>& verbs) {
-  CLI::App app("Light, torque and attitude of free-floating platforms.");
+  CLI::App app(
+      "Irradiance, solar-array power, radiation torque and attitude of free-floating platforms.");
   app.name("photorque");
   const Provenance build = build_provenance();
   app.set_version_flag("--version", "photorque " + build.version + " (git " + build.git_hash + ")");

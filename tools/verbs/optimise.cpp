@@ -172,7 +172,7 @@ void run(const CommandOptions& options, const Program& program) {
 
 Verb kind() {
   return {"optimise",
-          "The best design over the axes of a sweep, without derivatives",
+          "Search for the best design within the axes of [sweep]",
           command_with(traced_options, run),
           {"sweep"},
           "[sweep]"};

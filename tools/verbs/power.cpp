@@ -53,7 +53,7 @@ RunResult run(const CommandOptions& options, const Console& console) {
 
 Verb kind() {
   return {"power",
-          "Trace, then the solar array: current-voltage curve and maximum power point",
+          "Results of trace, and the solar array: current-voltage curve, maximum power point",
           command_that_writes(traced_page_options, run),
           {"scene", "material", "source", "receiver", "joint", "attitude", "trace", "array",
            "published", "effect", "environment", "disturbance"},

@@ -144,7 +144,7 @@ void Command::add_common(CommandOptions& common) {
   };
   add("--quiet", common.quiet, "Print only errors");
   add("--json", common.json, "Print the summary as JSON instead of text");
-  add("--verbose", common.verbose, "Print everything: checks, reasons and long tables");
+  add("--verbose", common.verbose, "Also print checks, reasons and long tables");
 }
 
 void Command::add_results(CommandOptions& common) {
@@ -175,7 +175,7 @@ void Command::add_traced_experiment(CommandOptions& common, Folder writes) {
       "standard error (0.01: 1 %)")
       .range = Option::Between<double>(1e-6, 1.0);
   add("--max-time", common.max_time_s,
-      "Maximum time of the trace in seconds; requires --target-error")
+      "Maximum time of each trace in seconds; requires --target-error")
       .mistake = above_zero("seconds");
   add("--allow-outside", common.allow_outside,
       "Follow links and paths of the model that lead out of its folder");
@@ -186,7 +186,8 @@ void Command::add_recordings(std::vector<std::filesystem::path>& recordings) {
 }
 
 void Command::add_page(CommandOptions& common) {
-  add("--page", common.page, "Also write page.html: scene, maps and curves for a browser");
+  add("--page", common.page,
+      "Also write page.html, an interactive page with scene, maps and curves");
 }
 
 void Command::add_checkpoint(CommandOptions& common) {

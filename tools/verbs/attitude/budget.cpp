@@ -91,8 +91,8 @@ RunResult run(const CommandOptions& options, const Console& console) {
 
 Verb kind() {
   return {"budget",
-          "Every disturbance torque at one state, largest first; for STASIS compared with "
-          "published figures",
+          "Every disturbance torque at one state, largest first; for STASIS also the "
+          "figures of the paper",
           command_that_writes(experiment_options, run),
           {"platform", "environment", "disturbance", "sensors", "budget"},
           "[platform]",

@@ -131,7 +131,7 @@ RunResult run(const CommandOptions& options, const Console& console) {
 
 Verb kind() {
   return {"camera",
-          "Attitude error of a camera that tracks markers, from its geometry",
+          "Attitude error of a camera that tracks markers, computed from board, lens and sensor",
           command_that_writes(experiment_options, run),
           {"platform", "environment", "disturbance", "sensors", "camera_study"},
           "[sensors.camera] with markers"};

@@ -376,12 +376,13 @@ void add_options(Command& command, Options& options) {
   command.add("--guess", options.guess,
               "Write a first experiment for these recordings (CSV), with its assumptions marked");
   command.add("--columns", options.columns,
-              "With --guess: names of the columns of files without a header: t_s,angle_deg");
+              "With --guess: names of the columns: t_s,angle_deg. For files without a header, or "
+              "with several bodies");
   command
       .add("--rate-Hz,--fps", options.rate_Hz,
            "With --guess: rows or video frames per second of files without a time")
       .range = Option::Between<double>{1e-9, 1e9};
-  command.add("--page", options.page, "Make report.html interactive: scene, maps and curves");
+  command.add("--page", options.page, "Write report.html with interactive scene, maps and curves");
   command.mistake = [&options]() -> std::string {
     if (!options.guess.empty()) options.name = name_of_guess(options.guess);
     if (options.guess.empty() && (!options.columns.empty() || options.rate_Hz)) {

@@ -243,7 +243,7 @@ void add_options(Command& command, Options& options) {
   command.add_experiment(options);
   command.add_recordings(options.recordings);
   command.add("--truth", options.truth,
-              "True motion of the recording for comparison (CSV with q_w ..., such as "
+              "True motion of the recording, for comparison (CSV with q_w …, such as "
               "time_history.csv of propagate)");
 }
 

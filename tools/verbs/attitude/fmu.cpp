@@ -353,7 +353,7 @@ RunResult pack_unit(const FmuOptions& options, const Console& console) {
 Verb kind() {
   return {
       "fmu",
-      "The platform as an FMI unit (3.0 or 2.0) for co-simulation in other programs",
+      "Export of the platform as a co-simulation unit (FMI 3.0 or 2.0) for other programs",
       command_that_writes(add_options, pack_unit),
       {"platform", "environment", "disturbance", "sensors", "propagate", "serve", "light", "array"},
       "[platform]"};
