@@ -63,7 +63,7 @@ TEST(Diagnose, NamesADipoleAndMeasuresIt) {
 }
 
 size_t place_of(const std::string& label, const Candidates& all) {
-  const auto at = std::ranges::find(all.list, label, &Candidate::label);
+  const auto at = std::ranges::find(all.list, label, &Candidate::name);
   if (at == all.list.end()) throw std::runtime_error("no candidate " + label);
   return static_cast<size_t>(at - all.list.begin());
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/constants.h"
+#include "core/provenance.h"
 #include "scenes/experiment/experiment.h"
 #include "tests/files.h"
 
