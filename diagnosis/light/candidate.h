@@ -26,8 +26,8 @@ FittedRun prepared_run(LightRun run, const NominalLight& nominal);
 FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
                   const NominalLight& nominal);
 
-// Its traits tell the search how to treat it. Its name is printed: "led_derated[3]", "unknown in
-// position".
+// An effect on light, or an empirical law, with the traits that the search uses. Its name is
+// printed: "led_derated[3]", "unknown in position".
 struct LightCandidate : inference::CandidateTraits {
   LightEffectKind kind;
   size_t index = 0;  // number of the lamp, cell …

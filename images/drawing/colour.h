@@ -89,7 +89,7 @@ struct Extent {
 // Signed: blue to red with zero in the middle, unless all values are on one side of zero and far
 // from it. Constant values get a scale that shows them as constant.
 ColourScale colour_scale(const Extent& extent, bool signed_values);
-// Of the finite values of a map.
+// Colour scale for the range of finite values of a map.
 ColourScale colour_scale(const Map& map);
 
 }  // namespace photorque

@@ -20,7 +20,7 @@ void require_consistent(const Table& table);
 std::filesystem::path file_in(const std::filesystem::path& folder, const std::string& name,
                               const std::string& extension);
 
-// What a writer writes, and where.
+// Content and destination of a file.
 struct WriterJob {
   const Product& product;
   const Provenance& provenance;

@@ -37,7 +37,7 @@ constexpr double slope_sigma = 10.0;
 struct LineFit : Fit {
   Eigen::VectorXd value;        // intercept of each run, slope, amplitudes
   Eigen::MatrixXd information;  // of them, with the priors
-  // The errors of the amplitudes are not foretold for the held-out runs.
+  // The effect of the errors of the amplitudes on the held-out runs is not predicted.
   LineFit() {
     hessian = ArrowMatrix(0, 0, 1);
     hessian.add_to_diagonal(0, std::numeric_limits<double>::quiet_NaN());

@@ -62,7 +62,7 @@ Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& conte
 
 struct NominalModel;  // attitude/propagation/run.h
 
-// An effect of the catalogue, or an empirical law. Its traits tell the search how to treat it.
+// An effect of the catalogue, or an empirical law, with the traits that the search uses.
 struct Candidate : inference::CandidateTraits {
   std::string variable;  // variable of an empirical law; empty for the catalogue
   Effect effect;         // empty kind for an empirical law
