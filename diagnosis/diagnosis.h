@@ -34,7 +34,7 @@ struct FittedParameter {
 // An effect of the catalogue that acts in addition to those of the experiment.
 struct FoundEffect {
   std::string kind;          // name of a disturbance kind
-  double probability = 0.0;  // posterior, 0 to 1
+  double probability = 0.0;  // posterior of it or of an indistinguishable effect, 0 to 1
   std::vector<FittedParameter> parameters;
   std::vector<std::string> indistinguishable_from;  // kinds that explain these data equally well
   std::string explanation;                          // one sentence of physics

@@ -276,14 +276,16 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
     for (const EffectKey& key : c.effect.keys) {
       if (key.is_fixed) effect.parameters.insert(effect.parameters.begin(), {key.key, key.start});
     }
+    effect.indistinguishable_from = rivals(effect.kind, chosen, trials, all);
+    std::vector<std::string> group = effect.indistinguishable_from;
+    group.push_back(effect.kind);
     for (size_t t = 0; t < trials.size(); ++t) {
       const std::vector<std::string> kinds = kinds_of(trials[t], all);
-      if (std::find(kinds.begin(), kinds.end(), effect.kind) != kinds.end()) {
+      if (std::ranges::find_first_of(kinds, group) != kinds.end()) {
         effect.probability += decision.probability[t];
       }
     }
     effect.probability = std::min(1.0, effect.probability);
-    effect.indistinguishable_from = rivals(effect.kind, chosen, trials, all);
     effects.push_back(std::move(effect));
   }
   return effects;

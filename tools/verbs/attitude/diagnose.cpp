@@ -2,6 +2,7 @@
 #include "tools/verbs/attitude/diagnose.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -402,7 +403,7 @@ void print_diagnosis(const Console& console, const Diagnosis& d) {
   for (const FoundEffect& effect : d.effects) {
     const std::string others = joined_text(effect.indistinguishable_from, " or ");
     print("  " + effect.kind + (others.empty() ? "" : " or " + others) + ", probability " +
-          show(effect.probability));
+          show(1e-3 * std::round(1e3 * effect.probability)));
     for (const FittedParameter& p : effect.parameters) {
       std::string text = "    " + p.key + " ";
       for (size_t i = 0; i < p.value.size(); ++i) {
