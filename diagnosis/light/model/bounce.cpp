@@ -108,7 +108,7 @@ std::vector<LampField> diffuse_fields(const LightSites& sites, std::vector<Illum
 LampField specular_field(const LightLab& lab, Illumination& lamp, const LightWall& wall,
                          size_t index) {
   static const std::vector<Vec2> disc = even_disc(64);
-  return lamp.over_places([&](const Vec3& point) {
+  const auto mirrored = [&](const Vec3& point) {
     double sum = 0.0;
     for (const auto& triangle : wall.triangles) {
       const Vec3 m = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
@@ -125,7 +125,8 @@ LampField specular_field(const LightLab& lab, Illumination& lamp, const LightWal
       if (through > 0.0) sum += through * lamp.on(image, normal, index);
     }
     return sum;
-  });
+  };
+  return lamp.over_places(mirrored, [](size_t) -> const double* { return nullptr; });
 }
 
 }  // namespace

@@ -28,6 +28,14 @@ void Illumination::move_to(size_t attitude) {
   obstacles_.emplace(lab_, geometry_.boxes, q);
 }
 
+bool Illumination::meets_boxes(size_t output) const {
+  const LightSites::Group& group = sites_.groups[sites_.outputs[output].group];
+  for (size_t i = group.first_point; i < group.first_point + group.count; ++i) {
+    if (obstacles_->meets_boxes(sites_.points_body_m[i], lamp_body_m_, side_m_.norm())) return true;
+  }
+  return false;
+}
+
 double Illumination::on(const Vec3& point, const Vec3& normal, size_t skipped) const {
   const Vec3 p = lamp_from_body_ * point + offset_m_, n = lamp_from_body_ * normal;
   const double E = light_.irradiance_W_m2(p, n);
@@ -59,8 +67,22 @@ LampGeometry geometry_of(const LightState& state, size_t lamp, bool enters_cells
 }
 
 LampField lamp_field(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
-                     const LampGeometry& geometry) {
+                     const LampGeometry& geometry, const std::optional<KnownField>& known) {
   Illumination lamp(lab, lamps, sites, geometry);
+  std::optional<Illumination> before;
+  if (known) {
+    LampGeometry same = geometry;
+    same.boxes = known->geometry->boxes;
+    if (same == *known->geometry) before.emplace(lab, lamps, sites, *known->geometry);
+  }
+  size_t attitude = std::numeric_limits<size_t>::max();
+  const auto unchanged = [&](size_t output) -> const double* {
+    if (!before) return nullptr;
+    const size_t now = sites.outputs[output].attitude;
+    if (now != attitude) before->move_to(attitude = now);
+    const bool changes = lamp.meets_boxes(output) || before->meets_boxes(output);
+    return changes ? nullptr : &(*known->field)[output];
+  };
   std::optional<CellFront> front;
   if (sites.enters_cells) {
     if (lab.has_array()) front = lab.design().front;
@@ -70,14 +92,15 @@ LampField lamp_field(const LightLab& lab, const LampSet& lamps, const LightSites
     }
   }
   const double wavelength_m = lamps.beams[geometry.lamp].spectrum.centre_m;
-  return lamp.over_places([&](const Vec3& point) {
+  const auto on = [&](const Vec3& point) {
     double E = lamp.on(point, lab.normal_body(), no_wall);
     if (front && E > 0.0) {
       const Vec3 to = (lamp.lamp_body_m() - point).normalized();
       E *= front->modifier(std::clamp(to.dot(lab.normal_body()), 0.0, 1.0), wavelength_m);
     }
     return E;
-  });
+  };
+  return lamp.over_places(on, unchanged);
 }
 
 }  // namespace photorque

@@ -32,6 +32,9 @@ class Obstacles {
 
   bool any() const { return !boxes_.empty() || !lab_.walls().empty(); }
 
+  // Whether a box may hide a part of an aperture of this radius from a point.
+  bool meets_boxes(const Vec3& point, const Vec3& lamp, double radius_m) const;
+
   // The visible part of a lamp's aperture from a point: its fraction, and the first moment over the
   // whole aperture. The moment is the mean position relative to the centre, in radii along `side`
   // and `up`, where hidden parts count as 0.
@@ -97,9 +100,15 @@ LampGeometry geometry_of(const LightState& state, size_t lamp, bool enters_cells
 // Irradiance [W/m²] of one lamp at full power on every output.
 using LampField = std::vector<double>;
 
-// The field of one lamp.
+// The field of the same lamp with another geometry.
+struct KnownField {
+  const LampGeometry* geometry;
+  const LampField* field;
+};
+// The field of one lamp. If only the boxes of `known` differ, its outputs are reused where neither
+// its boxes nor the new ones hide a part of the lamp.
 LampField lamp_field(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
-                     const LampGeometry& geometry);
+                     const LampGeometry& geometry, const std::optional<KnownField>& known);
 
 constexpr size_t no_wall = std::numeric_limits<size_t>::max();
 
@@ -119,13 +128,21 @@ class Illumination {
   const Vec3& side_m() const { return side_m_; }
   const Vec3& up_m() const { return up_m_; }
 
-  // Computes Σ weight · at(point) over the places of each output.
-  template <typename At>
-  LampField over_places(const At& at) {
+  // Whether a box may hide a part of the lamp from any point of an output at the present attitude.
+  bool meets_boxes(size_t output) const;
+
+  // Computes Σ weight · at(point) over the places of each output. If known(output) is not null, its
+  // target is used as the sum.
+  template <typename At, typename Known>
+  LampField over_places(const At& at, const Known& known) {
     LampField field(sites_.outputs.size(), 0.0);
     size_t attitude = std::numeric_limits<size_t>::max();
     for (size_t o = 0; o < sites_.outputs.size(); ++o) {
       if (sites_.outputs[o].attitude != attitude) move_to(attitude = sites_.outputs[o].attitude);
+      if (const double* sum = known(o)) {
+        field[o] = *sum;
+        continue;
+      }
       const LightSites::Group& group = sites_.groups[sites_.outputs[o].group];
       for (size_t i = group.first_point; i < group.first_point + group.count; ++i) {
         field[o] += sites_.weights[i] * at(sites_.points_body_m[i]);

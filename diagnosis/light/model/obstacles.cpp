@@ -206,6 +206,12 @@ Obstacles::Obstacles(const LightLab& lab, const std::vector<ShadowBox>& boxes,
   }
 }
 
+bool Obstacles::meets_boxes(const Vec3& point, const Vec3& lamp, double radius_m) const {
+  return std::ranges::any_of(in_body_, [&](const BodyBox& box) {
+    return may_reach(box.centre, box.radius + radius_m, point, lamp);
+  });
+}
+
 Obstacles::Open Obstacles::visible(const Vec3& point, const Vec3& lamp, const Vec3& side,
                                    const Vec3& up, size_t skipped) const {
   const double radius = side.norm();

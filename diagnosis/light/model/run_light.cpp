@@ -71,8 +71,13 @@ LightFields LightRun::fields(const LightState& state, const LightFields* near, W
       result.lamps.push_back(near->lamps[l]);
       continue;
     }
+    // Interpolated runs are evaluated at knots, for which the field per output is not known.
+    std::optional<KnownField> known;
+    if (near != nullptr && between_.empty()) {
+      known = {&near->lamps[l].geometry, near->lamps[l].field.get()};
+    }
     auto field = std::make_shared<const LampField>(
-        expanded(lamp_field(*lab_, lamp_set(), sites_, geometry)));
+        expanded(lamp_field(*lab_, lamp_set(), sites_, geometry, known)));
     result.lamps.push_back({std::move(geometry), std::move(field)});
   }
   // Light from walls is slow to compute and is reused while the lamps are unchanged.
