@@ -431,7 +431,7 @@ TEST(Machines, ReadingsDetermineTheirNoise) {
   EXPECT_LT(reading_level(turn, 3).value_or(0.0), 1e-4);
   // A motion computed without noise counts as read with about twenty bits.
   const Channel exact{"gyro_x_rad_s",
-                      sampled(0.1, 2000, [](double t) { return 0.3 * std::sin(0.1 * t); })};
+                      sampled(0.1, 2000, [](double t) { return 0.3 * std::sin(0.02 * pi * t); })};
   const double rms = 0.3 / std::sqrt(2.0);
   EXPECT_NEAR(*reading_level({observe(recording_of(0.1, {exact}), "exact.csv", {}, 5000)}, 3),
               1e-6 * rms, 0.05e-6 * rms);
