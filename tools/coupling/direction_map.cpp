@@ -118,10 +118,11 @@ void print_summary(const Console& console, const WrenchTable& table, const Dista
 }
 
 // Prints by how much the torque that a propagation interpolates in the table differs from the
-// torque of `light` in directions between the nodes. Only for wrenches without noise.
+// torque of `light` in directions between the nodes. Only for wrenches without noise. `radius_m`:
+// that of the scene.
 void print_interpolation_error(const Console& console, const LightDirections& light,
-                               const WrenchTable& table, const DistantSource& source, int threads,
-                               Warnings& warnings) {
+                               const WrenchTable& table, const DistantSource& source,
+                               double radius_m, int threads, Warnings& warnings) {
   constexpr size_t fresh = 64;
   constexpr double much = 0.05;
   const TorqueSurface surface(table);
@@ -139,7 +140,12 @@ void print_interpolation_error(const Console& console, const LightDirections& li
   });
   double squares = 0.0;
   for (const double one : differences_N_m) squares += one * one / fresh;
-  const double largest_N_m = std::max(largest_torque_N_m(table), 1e-300);
+  // A torque that is zero by symmetry counts as the largest force at a small lever arm.
+  constexpr double small_arm = 1e-3;
+  double largest_N_m = std::max(largest_torque_N_m(table), 1e-300);
+  for (const Vec3& force_N : table.force_body_N) {
+    largest_N_m = std::max(largest_N_m, small_arm * radius_m * force_N.norm());
+  }
   const double rms = std::sqrt(squares) / largest_N_m;
   const std::string found =
       readable_number(rms, 2) + " of the largest torque (rms in " + std::to_string(fresh) +
@@ -344,7 +350,8 @@ DirectionMap map_over_directions(const Console& console, const OpticalRun& run, 
   const double wall_s = wall.elapsed_s();
   print_summary(console, table, source, is_gas ? "Drag" : "Light pressure");
   if (whole && !is_noisy) {
-    print_interpolation_error(console, *light, table, source, threads, warnings);
+    print_interpolation_error(console, *light, table, source, run.experiment().scene.radius_m(),
+                              threads, warnings);
   }
 
   warnings.print(console);
