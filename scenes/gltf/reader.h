@@ -27,7 +27,7 @@
 #include "core/settings/settings.h"
 #include "core/spectrum.h"
 #include "raytrace/scene.h"
-#include "scenes/gltf/file/fault.h"
+#include "scenes/gltf/file/open.h"
 
 namespace photorque {
 

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "scenes/gltf/file/fault.h"
+#include "scenes/gltf/file/open.h"
 
 namespace photorque::gltf {
 

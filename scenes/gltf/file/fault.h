@@ -3,20 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 
 #include "core/errors.h"
-
-namespace photorque {
-
-// Returns the bytes of a relative path (percent-decoded), or nothing. Throws InputError if the
-// path, or a link on it, leaves the model's folder and this is not allowed.
-using GltfOpen = std::function<std::optional<std::string>(const std::string& relative_path)>;
-
-}  // namespace photorque
 
 namespace photorque::gltf {
 
