@@ -8,6 +8,7 @@
 
 #include "attitude/estimation/axis_readings.h"
 #include "attitude/estimation/swing.h"
+#include "attitude/recordings/cleaning.h"
 #include "attitude/recordings/columns.h"
 #include "core/errors.h"
 #include "core/numerics/median.h"
@@ -387,21 +388,11 @@ std::optional<Recording> on_a_line(const Recording& recording, const Platform& p
 }  // namespace
 
 void refuse_jump_of_clock(const Recording& recording, const std::string& name) {
-  constexpr double longest_gap = 10.0;
-  double gaps_s = 0.0, longest_s = 0.0;
-  RecordingReport::Gap longest;
-  for (const RecordingReport::Gap& gap : recording.report.gaps) {
-    const double gap_s = gap.to_s - gap.from_s;
-    gaps_s += gap_s;
-    if (gap_s > longest_s) longest = gap;
-    longest_s = std::max(longest_s, gap_s);
-  }
-  if (recording.rows() < 2) return;
-  const double recorded_s = recording.time_s.back() - recording.time_s.front() - gaps_s;
-  if (!(longest_s > longest_gap * recorded_s)) return;
+  const std::optional<ClockJump> jump = jump_of_clock(recording);
+  if (!jump) return;
   throw InputError({name, 0}, "t_s",
                    printed("nothing from t_s = %.10g to %.10g, of a recording of %.4g s in all",
-                           longest.from_s, longest.to_s, recorded_s),
+                           jump->gap.from_s, jump->gap.to_s, jump->recorded_s),
                    "a clock that does not jump; with several segments a file each");
 }
 

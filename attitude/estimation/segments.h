@@ -28,9 +28,8 @@ struct Segments {
 Segments observe_segments(const Recording& recording, const std::string& name,
                           const Platform& platform, size_t max_blocks = 6000);
 
-// InputError with the times of a gap that is more than ten times as long as all recorded time.
-// Causes are a clock that was set during the recording, or two recordings in one file. A search for
-// effects over such an interval does not end.
+// InputError with the times of a jump of the clock (recordings/cleaning.h). A search for effects
+// over such an interval does not end.
 void refuse_jump_of_clock(const Recording& recording, const std::string& name);
 
 // Whether any command, current or wheel speed is recorded.

@@ -1,6 +1,8 @@
 // Repairs of a recording: sign flips, bad quaternions, outliers, gaps.
 #pragma once
 
+#include <optional>
+
 #include "attitude/recordings/recording.h"
 
 namespace photorque {
@@ -22,5 +24,19 @@ void remove_outliers(Recording& recording);
 
 // Sets median interval, jitter and gaps of the report.
 void measure_times(Recording& recording);
+
+// A gap that is more than ten times as long as all recorded time. Causes are a clock that was set
+// during the recording, or two recordings in one file.
+struct ClockJump {
+  RecordingReport::Gap gap;
+  double recorded_s = 0.0;  // without gaps
+};
+
+// The longest such gap of the report; nothing without one.
+std::optional<ClockJump> jump_of_clock(const Recording& recording);
+
+// Leaves out the first or last one or two rows if such a gap separates them from at least twenty
+// others, as a row of zeros before the clock runs.
+void omit_isolated_rows(Recording& recording);
 
 }  // namespace photorque

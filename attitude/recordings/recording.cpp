@@ -351,6 +351,7 @@ class RecordingReader {
       return !std::ranges::all_of(channel.values, [](double x) { return std::isnan(x); });
     });
     if (!any) throw error("", "no number in any channel", "at least one channel with values");
+    if (options_.omit_isolated_rows) omit_isolated_rows(recording_);
     repair_quaternions(recording_);
     if (options_.remove_outliers) remove_outliers(recording_);
     measure_times(recording_);
@@ -417,6 +418,7 @@ std::string RecordingReport::text() const {
   note(rows_without_time, "rows without a time left out");
   note(repeated_times, "rows that repeat a time left out");
   note(backward_times, "rows out of order left out");
+  note(isolated_rows, "rows at an end beyond a jump of the clock left out");
   note(static_cast<int64_t>(gaps.size()), "gaps");
   note(empty_cells, "empty cells");
   note(unreadable_cells, "cells that hold no number");

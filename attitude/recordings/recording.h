@@ -38,6 +38,7 @@ struct RecordingReport {
   int64_t rows_without_time = 0;  // left out
   int64_t repeated_times = 0;     // a repeated time: left out
   int64_t backward_times = 0;     // earlier than a row before: left out
+  int64_t isolated_rows = 0;      // at an end, beyond a jump of the clock: left out
   int64_t first_backward_line = 0;
   int64_t first_repeated_line = 0;
   int64_t empty_cells = 0;          // cells
@@ -95,6 +96,7 @@ struct RecordingOptions {
   // column `frame`, divided by this rate.
   std::optional<double> rate_Hz = {};
   bool remove_outliers = true;
+  bool omit_isolated_rows = true;   // at the ends, beyond a jump of the clock (cleaning.h)
   std::string angle_sequence = {};  // of the recording
   // A point about which the position x_m, y_m rotates. The positions are then converted to one
   // angle from the vertical through it.

@@ -11,6 +11,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/format.h"
+#include "core/text/parse.h"
 #include "diagnosis/guess/file_head.h"
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/guess/header.h"
@@ -393,6 +394,10 @@ RecordingOptions options_of(const std::vector<GuessedColumn>& columns,
 
 void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& columns) {
   for (const GuessedColumn& c : columns) {
+    if (!c.unknown_unit.empty()) {
+      document.comment("CONFIRM: the column " + in_quotes(c.in_file) + " is left out: its unit " +
+                       in_quotes(c.unknown_unit) + " is unknown.");
+    }
     if (c.channel.empty() || c.channel == c.in_file) continue;
     if (!c.is_sure) document.comment("CONFIRM: " + c.because + " the next column.");
     document.set(document.table("recording"), "columns." + c.channel, {c.in_file});
@@ -452,7 +457,11 @@ void require_motion(const fs::path& path, const std::vector<GuessedColumn>& colu
   if (!has_motion(columns) && in_counts != columns.end()) {
     throw InputError({path.string()}, in_counts->in_file, "counts", counts_of_encoder);
   }
-  throw InputError({path.string()}, "header", found + names_in(path, reading), expected);
+  const bool is_one_body = expected.find("--columns") != std::string::npos;
+  const std::string command =
+      is_one_body || counts ? "" : command_for_columns(path, reading, columns);
+  throw InputError({path.string()}, "header", found + names_in(path, reading),
+                   expected + (command.empty() ? "" : "; or " + command));
 }
 
 void require_rows(const fs::path& path, const std::vector<GuessedColumn>& columns,

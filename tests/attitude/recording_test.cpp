@@ -134,6 +134,28 @@ TEST(Recording, RealFilesAreMendedAndEverythingIsCounted) {
                                   report.rows_without_time + report.malformed_rows);
 }
 
+// A row of zeros before the clock runs, and two rows after it was set. Three rows are a segment.
+TEST(Recording, SingleRowsBeyondAJumpOfTheClockAreLeftOut) {
+  const auto with = [](const std::string& before, const std::string& after) {
+    std::string text = "t_s,rate_rad_s\n" + before;
+    for (int i = 0; i < 30; ++i) text += std::to_string(1733.0 + 0.1 * i) + ",1\n";
+    return read(text + after);
+  };
+  const Recording zeros = with("0,0\n", ""), both = with("0,0\n", "9000,0\n9000.1,0\n");
+  for (const Recording& r : {zeros, both}) {
+    EXPECT_EQ(r.rows(), 30u);
+    EXPECT_EQ(r.report.rows_kept, 30);
+    EXPECT_EQ(cells_of(r, "rate_rad_s").size(), 30u);
+    EXPECT_EQ(cells_of(r, "rate_rad_s")[0], 1.0);
+    EXPECT_TRUE(r.report.gaps.empty());
+  }
+  EXPECT_EQ(zeros.report.isolated_rows, 1);
+  EXPECT_EQ(both.report.isolated_rows, 3);
+  EXPECT_THAT(both.report.text(), HasSubstr("3 rows at an end beyond a jump of the clock"));
+  EXPECT_EQ(with("0,0\n0.1,0\n0.2,0\n", "").report.isolated_rows, 0);
+  EXPECT_EQ(with("1710,0\n", "").report.isolated_rows, 0);  // less than ten times 2.9 s
+}
+
 TEST(Recording, ColumnsMayHaveOtherNamesAndUnits) {
   RecordingOptions options;
   options.columns = {{"t_ms", "Stamp"}, {"gyro_z_deg_s", "wz"}};

@@ -192,6 +192,20 @@ TEST_F(Headers, OfUnknownUnitsAreRefused) {
   EXPECT_EQ(channels("t_s;angle (raw);angle (deg)").at(2), "angle_deg");
 }
 
+// A gain, a counter or a flag beside a motion is left out with a note. A gyro axis is not.
+TEST_F(Headers, OfUnknownUnitsBesideAMotionAreLeftOut) {
+  std::string text = "%t [ms]\tPosition [rad]\tDerivative Gain [Kd]\tSpeed flag [bool]\n";
+  for (int i = 0; i < 40; ++i) text += printed("%d\t%.4f\t0.5\t1\n", 20 * i, 0.1 * i);
+  const std::string guessed = guess_experiment({test_file("gains.txt", text)}, ".");
+  EXPECT_THAT(guessed, AllOf(HasSubstr("CONFIRM: the column \"Derivative Gain [Kd]\" is left out"),
+                             HasSubstr("angle_rad = \"Position [rad]\"")));
+  EXPECT_THAT(refusal_of([&] { channels("t_s;gyro_x_rad_s;gyro_y [foo]"); }),
+              HasSubstr("--columns t_s,gyro_x_rad_s,gyro_y_rad_s ("));
+  EXPECT_THAT(refusal_of([&] { channels("t_s;lux;speed [Kd];flag"); }),
+              AllOf(HasSubstr("the unit \"Kd\""),
+                    HasSubstr("--columns t_s,column_2,rate_rad_s,column_4 (")));
+}
+
 TEST_F(Headers, StateTheirUnitOrAreMarked) {
   const auto columns = guess_columns(table("t / s;Winkel / °;Auslenkung 2;rate"));
   EXPECT_TRUE(columns[0].is_sure);
@@ -483,6 +497,24 @@ TEST(Guess, FilesThatCannotBeReadNameTheCure) {
   EXPECT_THAT(refusal(std::string("\xff\xfet\0_\0s\0", 8)),
               AllOf(HasSubstr("UTF-16"), HasSubstr("iconv -f UTF-16")));
   EXPECT_THAT(refusal("nothing here\n"), HasSubstr("no rows of numbers"));
+  EXPECT_THAT(refusal("2.6\n-61.2\n-3.1\n63.2\n"), HasSubstr("--columns angle_deg --rate-Hz 10"));
+  EXPECT_THAT(refusal("0.26\n-0.62\n0.31\n"), HasSubstr("--columns angle_rad --rate-Hz 10"));
+  EXPECT_THAT(refusal("0,1,2,3,4,5,6,7,8\n1,1,2,3,4,5,6,7,8\n"),
+              HasSubstr("--columns t_s,column_2,column_3,column_4,column_5,column_6,column_7,"
+                        "column_8,column_9 ("));
+  EXPECT_THAT(refusal_of([&] {
+                guess_columns(test_file("five.csv", "a,b,c,d,e\n0,1,2,3,4\n1,2,3,4,5\n"),
+                              {.header = {"t_s", "angle_rad"}});
+              }),
+              HasSubstr("as many names as the file has columns: 5"));
+  EXPECT_THAT(refusal_of([&] {
+                guess_experiment({test_file("lamp.ies",
+                                            "IESNA:LM-63-1995\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n"
+                                            "1 1 50\n0 45 90\n0\n100 50 0\n")},
+                                 ".");
+              }),
+              AllOf(HasSubstr("a lamp file (IESNA:LM-63-1995)"), HasSubstr("kind = \"ies\""),
+                    Not(HasSubstr("--columns"))));
   EXPECT_THAT(
       refusal("speed\n29.1\n28.8\n28.6\n"),
       AllOf(HasSubstr("one column of numbers"), HasSubstr("--columns rate_rad_s --rate-Hz 10")));

@@ -62,6 +62,31 @@ TEST_F(ArrayCommand, AParameterWithoutAnyErrorIsNotDetermined) {
   EXPECT_THAT(table, testing::Not(HasSubstr("inf")));
 }
 
+// The names of the columns in numbered lines above the rows, as in files of LOANA.
+TEST_F(ArrayCommand, NamesInNumberedLinesAreThoseOfColumns) {
+  std::string rows;
+  const std::string curve = lit_curve(1.0);
+  for (const std::string_view line :
+       lines_of(std::string_view(curve).substr(curve.find('\n') + 1))) {
+    if (!line.empty()) rows += std::string(line) + ",25,-2.67\n";
+  }
+  std::ranges::replace(rows, ',', '\t');
+  write("plain.csv", curve);
+  write(
+      "32.lgt",
+      "[General]\nDate:\t24/06/21\n\n[Measurement]\nLabel1:\tVoltage\t[V]\nLabel2:\tCurrent\t[A]\n"
+      "Label3:\tTemperature\t[°C]\nLabel4:\tMonitor\t[V]\n\n**Data**\n" +
+          rows);
+  std::vector<std::string> found;
+  for (const char* file : {"plain.csv", "32.lgt"}) {
+    fit("curves = [\"" + std::string(file) + "\"]\ncells_in_series = 1\n");
+    const std::string table = file_text(at("out/parameters.csv"));
+    found.push_back(table.substr(table.find("\nphotocurrent_A"), 30));
+  }
+  EXPECT_THAT(found[0], HasSubstr("photocurrent_A,value,"));
+  EXPECT_EQ(found[0], found[1]);
+}
+
 // Half-cut module under uneven light: twice the power of one of its two groups.
 TEST_F(ArrayCommand, TwinModulesAreOneCircuit) {
   write("plate.obj", lit_plate);

@@ -12,6 +12,7 @@
 #include "core/settings/settings.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
+#include "diagnosis/guess/file_head.h"
 #include "photovoltaics/fit/conditions.h"
 #include "photovoltaics/fit/curve_text.h"
 #include "photovoltaics/fit/fit.h"
@@ -25,10 +26,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The text of a file that names its columns in numbered lines or between other separators than the
+// cells of its rows: these names and the rows, as diagnose --guess reads them. Nothing for others.
+std::optional<std::string> text_with_names(const fs::path& file) {
+  try {
+    const FileHead head = head_of(file, {});
+    if (!head.is_split_otherwise) return std::nullopt;
+    std::string text = whole_text(file, head.header);
+    if (!curve_columns_in(text, file.string()).empty()) return text;
+  } catch (const InputError&) {  // another file
+  }
+  return std::nullopt;
+}
+
+std::vector<MeasuredCurve> curves_of(const fs::path& file) {
+  try {
+    return curves_in(whole_text(file), file.string());
+  } catch (const InputError&) {
+    const std::optional<std::string> text = text_with_names(file);
+    if (!text) throw;
+    return curves_in(*text, file.string());
+  }
+}
+
 // Adds the cleaned curves of a file; notes state the omitted points.
 void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
                 std::optional<double> temperature_K, FitTask& task) {
-  std::vector<MeasuredCurve> curves = curves_in(whole_text(file), file.string());
+  std::vector<MeasuredCurve> curves = curves_of(file);
   for (size_t k = 0; k < curves.size(); ++k) {
     MeasuredCurve& curve = curves[k];
     const std::string name =
