@@ -12,6 +12,7 @@
 #include "attitude/observation/heavy_tails.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/observation/noise_search.h"
+#include "attitude/recordings/cleaning.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/text/format.h"
@@ -158,6 +159,9 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
     Segments segments = observe_segments(r.recording, r.name, platform, options.max_blocks);
     MotionModel::refuse_rows_far_apart(segments.all.front(), nominal.model);
     warn_of_omitted_rows(r.name, segments, warnings);
+    if (r.recording.report.held_readings > 0) {
+      warnings.push_back(r.name + ": " + held_readings_text(r.recording.report));
+    }
     if (r.recording.report.has_decimal_commas) {
       warnings.push_back(r.name + ": its numbers have decimal commas, read as points");
     }
@@ -395,6 +399,7 @@ DataQuality quality_of(const std::vector<NamedRecording>& recordings,
       q.rejected["no_time"] += report.rows_without_time;
       q.rejected["repeated_time"] += report.repeated_times;
       q.rejected["backward_time"] += report.backward_times;
+      q.rejected["held_reading"] += report.held_readings;
       q.rejected["outlier"] += report.outlier_cells;
       q.rejected["gap"] += static_cast<int64_t>(report.gaps.size());
       q.rejected["empty_cell"] += report.empty_cells;
