@@ -1,7 +1,8 @@
-// Repairs of a recording: sign flips, bad quaternions, outliers, gaps.
+// Repairs of a recording: sign flips, bad quaternions, held readings, outliers, gaps.
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "attitude/recordings/recording.h"
 
@@ -21,6 +22,16 @@ void repair_quaternions(Recording& recording);
 // if the channel's noise is otherwise too fine for equal readings. Examples are a gyro at the end
 // of its range and a camera that repeats its last attitude.
 void remove_outliers(Recording& recording);
+
+// Keeps the first row of each reading if the log is faster than a sensor and repeats its readings
+// (sample and hold), as repetitions are not independent. All channels of the sensor are then equal
+// in runs that nearly all have the same length, or two that differ by one row. Empties the other
+// cells of the sensor, and removes rows without a reading unless a command or an event changes. A
+// slow motion in coarse digits and a body at rest are kept.
+void remove_held_readings(Recording& recording);
+
+// The finding of remove_held_readings() as a note.
+std::string held_readings_text(const RecordingReport& report);
 
 // Sets median interval, jitter and gaps of the report.
 void measure_times(Recording& recording);

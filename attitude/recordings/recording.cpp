@@ -353,6 +353,7 @@ class RecordingReader {
     if (!any) throw error("", "no number in any channel", "at least one channel with values");
     if (options_.omit_isolated_rows) omit_isolated_rows(recording_);
     repair_quaternions(recording_);
+    remove_held_readings(recording_);
     if (options_.remove_outliers) remove_outliers(recording_);
     measure_times(recording_);
   }
@@ -424,6 +425,7 @@ std::string RecordingReport::text() const {
   note(unreadable_cells, "cells that hold no number");
   note(bad_quaternions, "quaternions that are not of unit norm left out");
   note(flipped_quaternions, "sign flips of the quaternion undone");
+  if (held_readings > 0) out << "\n" << held_readings_text(*this);
   for (const auto& [channel, count] : outliers) {
     out << "\n" << count << " outliers in " << channel << " left out";
   }

@@ -43,6 +43,7 @@ struct RecordingReport {
   int64_t first_repeated_line = 0;
   int64_t empty_cells = 0;          // cells
   int64_t unreadable_cells = 0;     // cells without a number: emptied
+  int64_t held_readings = 0;        // repeated until the next one (remove_held_readings())
   int64_t outlier_cells = 0;        // cells of measured channels: emptied
   int64_t bad_quaternions = 0;      // of a norm that is not 1 to 1 %: emptied
   int64_t flipped_quaternions = 0;  // sign changes undone
@@ -53,9 +54,11 @@ struct RecordingReport {
   double median_interval_s = 0.0;
   double jitter_s = 0.0;                    // standard deviation of the intervals, gaps left out
   std::map<std::string, int64_t> outliers;  // cells by channel
-  bool has_decimal_commas = false;          // "0,25" between other separators, read as 0.25
-  bool has_old_yaw = false;                 // a column named heading, read as yaw
-  std::set<std::string> absent_columns;     // named by the options, not in the file
+  // Rows for which a held reading is repeated, by the first channel of the instrument.
+  std::map<std::string, int64_t> rows_per_reading;
+  bool has_decimal_commas = false;       // "0,25" between other separators, read as 0.25
+  bool has_old_yaw = false;              // a column named heading, read as yaw
+  std::set<std::string> absent_columns;  // named by the options, not in the file
 
   // The report in a few lines, with only the findings that occurred.
   std::string text() const;
@@ -86,6 +89,8 @@ inline constexpr std::array schedule_channels = {
     "command_x_N_m", "command_y_N_m",    "command_z_N_m",     "command_x_N",
     "command_y_N",   "command_body_x_N", "command_body_y_N",  "wheel_x_rad_s",
     "wheel_y_rad_s", "wheel_z_rad_s",    "battery_current_A", "led_current_A"};
+// Channels of which one flags sudden changes of the motion.
+inline constexpr std::array event_channels = {"thruster", "impulse", "event"};
 
 struct RecordingOptions {
   // Names in the file by channel: {"gyro_x_rad_s", "wx"}. A channel may have another unit of its

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/estimation/axis_readings.h"
@@ -220,8 +221,11 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   report_gains_over_segments(answer, d);
   warn_of_weak_holdout(d);
   explain_unit_inertia(stated.model.platform, d);
-  for (const std::string& text : contradicted_priors(answer.chosen(), options.limits.decision)) {
-    d.warnings.push_back(text);
+  // The parameters of a model that does not describe the recording have no meaning.
+  if (d.verdict != Verdict::unexplained ||
+      !inference::has_diverged(answer.chosen(), options.limits)) {
+    std::ranges::copy(contradicted_priors(answer.chosen(), options.limits.decision),
+                      std::back_inserter(d.warnings));
   }
   if (!answer.all.remark.empty() && !d.effects.empty()) d.warnings.push_back(answer.all.remark);
   d.instruments = data.instruments;

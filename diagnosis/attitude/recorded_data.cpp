@@ -12,6 +12,7 @@
 #include "attitude/observation/heavy_tails.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/observation/noise_search.h"
+#include "attitude/recordings/cleaning.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/text/format.h"
@@ -161,6 +162,9 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
     if (const int64_t rows = r.recording.report.isolated_rows; rows > 0) {
       warnings.push_back(r.name + ": rows at an end beyond a jump of the clock: " +
                          std::to_string(rows) + " left out");
+    }
+    if (r.recording.report.held_readings > 0) {
+      warnings.push_back(r.name + ": " + held_readings_text(r.recording.report));
     }
     if (r.recording.report.has_decimal_commas) {
       warnings.push_back(r.name + ": its numbers have decimal commas, read as points");
@@ -400,6 +404,7 @@ DataQuality quality_of(const std::vector<NamedRecording>& recordings,
       q.rejected["repeated_time"] += report.repeated_times;
       q.rejected["backward_time"] += report.backward_times;
       q.rejected["isolated_row"] += report.isolated_rows;
+      q.rejected["held_reading"] += report.held_readings;
       q.rejected["outlier"] += report.outlier_cells;
       q.rejected["gap"] += static_cast<int64_t>(report.gaps.size());
       q.rejected["empty_cell"] += report.empty_cells;

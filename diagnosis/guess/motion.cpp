@@ -293,8 +293,7 @@ bool infer_from_scalars(Machine& m) {
   if (m.has("rate_magnitude_rad_s")) {
     m.why =
         "only the magnitude of the rate: assumed to be a free body (thrown or in orbit). On a "
-        "bearing "
-        "it is \"tabletop\".";
+        "bearing it is \"tabletop\", which requires mass_kg.";
     m.observe_as(Topology::free);
     return true;
   }
@@ -327,8 +326,7 @@ void infer_machine(Machine& m) {
   if (!m.sees_attitude() && !m.has_three_rates()) return infer_one_axis(m);
   m.why =
       "three rates without attitude: assumed to be a free body (thrown, in orbit, on gimbals). On "
-      "a "
-      "bearing or with a weight off the centre it is \"tabletop\".";
+      "a bearing or with a weight off the centre it is \"tabletop\", which requires mass_kg.";
   if (!m.sees_attitude()) {
     m.observe_as(Topology::free);
     const bool is_held = has_no_mean_rate(m.runs);

@@ -498,6 +498,12 @@ TEST(Guess, RatesThatFollowNoInertiaGiveNoRatios) {
   const std::string toml = guess_experiment({test_file("driven.csv", text)}, ".");
   EXPECT_THAT(toml, HasSubstr("do not determine the ratios"));
   EXPECT_TRUE(machine(toml).model.platform.inertia_kg_m2.isApprox(Mat3::Identity()));
+  // A proposed alternative is complete.
+  EXPECT_THAT(toml, HasSubstr("it is \"tabletop\", which requires mass_kg."));
+  std::string on_bearing = toml;
+  on_bearing.replace(on_bearing.find("topology = \"free\""), 17,
+                     "topology = \"tabletop\"\nmass_kg = 1");
+  EXPECT_EQ(machine(on_bearing).model.platform.topology, Topology::tabletop);
 }
 
 TEST(Guess, AThrowHasTheRatiosOfItsMoments) {

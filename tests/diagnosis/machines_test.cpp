@@ -111,6 +111,31 @@ noise_rad_s = 0.002
   EXPECT_NEAR(d.chi2_per_sample_after, 1.0, 5.0 * std::sqrt(2.0 / (3.0 * 450.0)));
 }
 
+// Rates that no free body has: χ² per sample of every fit is above 10⁴. The fitted moments are far
+// from their stated ones, which contradicts nothing.
+TEST(Machines, AModelThatDescribesNothingContradictsNoStatedValue) {
+  Noise noise(1, 0.002);
+  std::vector<Channel> gyro = {{"gyro_x_rad_s", {}}, {"gyro_y_rad_s", {}}, {"gyro_z_rad_s", {}}};
+  for (int i = 0; i < 80; ++i) {
+    const double phase = 0.22 * i + 0.5;
+    gyro[0].values.push_back(2.0 * std::sin(phase) + 0.3 + noise());
+    gyro[1].values.push_back(0.8 * std::pow(std::sin(phase), 2) + noise());
+    gyro[2].values.push_back(0.5 * std::sin(2.0 * phase - 1.0) + noise());
+  }
+  const NominalModel nominal = machine(R"([platform]
+topology = "free"
+[platform.inertia_kg_m2]
+value = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+sigma = [[0, 0.2, 0.2], [0.2, 0.4, 0.2], [0.2, 0.2, 0.4]]
+[sensors.gyro]
+noise_rad_s = 0.002
+)");
+  const Diagnosis d = diagnosed(nominal, 0.05, gyro);
+  EXPECT_EQ(d.verdict, Verdict::unexplained) << d.sentence;
+  EXPECT_GT(d.chi2_per_sample_after, 1e4);
+  EXPECT_THAT(d.warnings, testing::Not(Contains(HasSubstr("σ"))));
+}
+
 // Angular momentum in the inertial frame is conserved at any speed of a wheel on board.
 TEST(Machines, AWheelExchangesMomentumWithItsBody) {
   NominalModel nominal = machine(R"([platform]
