@@ -306,7 +306,8 @@ void print_misfit(const Console& console, double scatter) {
   console.line(
       "  warning: the scatter is " + readable_number(scatter, 3) +
       " times that of the stated noise: one diode does not describe these data. The errors "
-      "follow from the scatter; `photorque diagnose` with [module] searches for the cause");
+      "follow from the scatter; `photorque diagnose` with [module] tests shade, cracks and other "
+      "faults");
 }
 
 void print_left_out(const Console& console, const FitTask& task,
