@@ -310,21 +310,6 @@ void print_misfit(const Console& console, double scatter) {
       "faults");
 }
 
-void print_left_out(const Console& console, const FitTask& task,
-                    const std::vector<OutlierReading>& outliers) {
-  for (const std::string& note : task.notes) console.line("  note: " + note);
-  if (outliers.empty()) return;
-  std::string where;
-  constexpr size_t shown = 5;
-  for (size_t i = 0; i < std::min(shown, outliers.size()); ++i) {
-    where += (i > 0 ? ", " : "") + show(outliers[i].voltage_V) + " V " +
-             show(outliers[i].current_A) + " A";
-  }
-  console.line("  note: left out " + std::to_string(outliers.size()) +
-               " outliers, more than eight errors off: " + where +
-               (outliers.size() > shown ? ", …" : ""));
-}
-
 // States whether the irradiance of single readings is used, if any curve has it.
 void print_light_note(const Console& console, const FitTask& task, bool uses_light) {
   if (std::ranges::all_of(task.sweeps, [](const IvSweep& s) { return s.light.empty(); })) return;
@@ -372,15 +357,6 @@ Product fit_even_light(const FitTask& task, const Console& console) {
   Product product = parameter_product(rows);
   add_cell_plot(task, cell, fit.diode.photocurrent_A.value, product);
   return product;
-}
-
-// Prints the law of the shunt, followed by `more`.
-void print_shunt_law(const Console& console, ShuntLaw law, const std::string& more) {
-  console.line(std::string("  shunt: ") +
-               (law == ShuntLaw::constant  ? "constant"
-                : law == ShuntLaw::inverse ? "inversely proportional to the light"
-                                           : "exponential in the light (PVsyst)") +
-               more);
 }
 
 // Adds the table "curves" and the plot of the first curve.

@@ -276,4 +276,27 @@ Product list_module(const ListedModule& module, const Console& console) {
   return product;
 }
 
+void print_left_out(const Console& console, const FitTask& task,
+                    const std::vector<OutlierReading>& outliers) {
+  for (const std::string& note : task.notes) console.line("  note: " + note);
+  if (outliers.empty()) return;
+  std::string where;
+  constexpr size_t shown = 5;
+  for (size_t i = 0; i < std::min(shown, outliers.size()); ++i) {
+    where += (i > 0 ? ", " : "") + show(outliers[i].voltage_V) + " V " +
+             show(outliers[i].current_A) + " A";
+  }
+  console.line("  note: left out " + std::to_string(outliers.size()) +
+               " outliers, more than eight errors off: " + where +
+               (outliers.size() > shown ? ", …" : ""));
+}
+
+void print_shunt_law(const Console& console, ShuntLaw law, const std::string& more) {
+  console.line(std::string("  shunt: ") +
+               (law == ShuntLaw::constant  ? "constant"
+                : law == ShuntLaw::inverse ? "inversely proportional to the light"
+                                           : "exponential in the light (PVsyst)") +
+               more);
+}
+
 }  // namespace photorque
