@@ -107,29 +107,24 @@ void make_own_file(const fs::path& path, const fs::path& wanted) {
 void require_plain_file(const fs::path& path) {
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
-  const auto refuse = [&](const char* found) {
-    throw InputError({path.string()}, "", found, "a file");
+  const auto kind = [&] {
+    switch (status.type()) {
+      case fs::file_type::directory:
+        return "a folder";
+      case fs::file_type::character:
+      case fs::file_type::block:
+        return "a device";
+      case fs::file_type::fifo:
+      case fs::file_type::socket:
+        return "a pipe, which can be read only once";
+      case fs::file_type::not_found:
+        return "no such file";
+      default:
+        return "a file of a type that is not supported";
+    }
   };
-  switch (status.type()) {
-    case fs::file_type::regular:
-      return;
-    case fs::file_type::directory:
-      refuse("a folder");
-      break;
-    case fs::file_type::character:
-    case fs::file_type::block:
-      refuse("a device");
-      break;
-    case fs::file_type::fifo:
-    case fs::file_type::socket:
-      refuse("a pipe, which can be read only once");
-      break;
-    case fs::file_type::not_found:
-      refuse("no such file");
-      break;
-    default:
-      refuse("a file of a type that is not supported");
-  }
+  if (status.type() == fs::file_type::regular) return;
+  throw InputError({path.string()}, "", kind(), "a file");
 }
 
 std::string read_file(const fs::path& path, uint64_t largest_bytes) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/errors.h"
 
@@ -19,11 +20,11 @@ Estimate estimate_from_replicates(std::span<const double> replicates) {
 
 namespace {
 
-// The column of this name, of a const or mutable table; null if the table has none.
-template <class T>
-auto* column_in(T& table, std::string_view name) {
-  const auto found = std::ranges::find(table.columns, name, &Table::Column::name);
-  return found == table.columns.end() ? nullptr : &*found;
+// The item of this name; null if there is none.
+template <class Item>
+const Item* named(const std::vector<Item>& all, std::string_view name) {
+  const auto found = std::ranges::find(all, name, &Item::name);
+  return found == all.end() ? nullptr : &*found;
 }
 
 NumericalError fault(const Table& table, std::string_view column, const std::string& what) {
@@ -31,20 +32,12 @@ NumericalError fault(const Table& table, std::string_view column, const std::str
 }
 
 Table& append(Table& table, Table::Column column) {
-  if (column_in(table, column.name) != nullptr) throw fault(table, column.name, "added twice");
+  if (table.find(column.name) != nullptr) throw fault(table, column.name, "added twice");
   if (!table.columns.empty() && column.size() != table.columns.front().size()) {
     throw fault(table, column.name, "its length differs from that of the first column");
   }
   table.columns.push_back(std::move(column));
   return table;
-}
-
-// The column of this name, of a const or mutable table; NumericalError if the table has none.
-template <class T>
-auto& required_column(T& table, std::string_view name) {
-  auto* const found = column_in(table, name);
-  if (found == nullptr) throw fault(table, name, "the table has no column of this name");
-  return *found;
 }
 
 }  // namespace
@@ -65,7 +58,7 @@ Table& Table::add(std::string column_name, std::vector<std::string> texts) {
 
 Table::Column& Table::Row::cell_column(std::string_view column_name) const {
   const auto is_set = [](const Column& column) { return column.size() == 1; };
-  if (index_ == 0 && column_in(*table_, column_name) == nullptr &&
+  if (index_ == 0 && table_->find(column_name) == nullptr &&
       std::ranges::all_of(table_->columns, is_set)) {
     return table_->columns.emplace_back(Column{std::string(column_name)});
   }
@@ -100,26 +93,18 @@ Table::Row Table::row() {
 }
 
 const Table::Column* Table::find(std::string_view column_name) const {
-  return column_in(*this, column_name);
+  return named(columns, column_name);
 }
 
 const Table::Column& Table::column(std::string_view column_name) const {
-  return required_column(*this, column_name);
+  const Column* const found = find(column_name);
+  if (found == nullptr) throw fault(*this, column_name, "the table has no column of this name");
+  return *found;
 }
 
 Table::Column& Table::column(std::string_view column_name) {
-  return required_column(*this, column_name);
+  return const_cast<Column&>(std::as_const(*this).column(column_name));
 }
-
-namespace {
-
-template <class Item>
-const Item* named(const std::vector<Item>& all, std::string_view name) {
-  const auto found = std::ranges::find(all, name, &Item::name);
-  return found == all.end() ? nullptr : &*found;
-}
-
-}  // namespace
 
 const Quantity* find_quantity(const Product& product, std::string_view name) {
   return named(product.quantities, name);

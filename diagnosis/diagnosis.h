@@ -20,6 +20,9 @@ using inference::Verdict;
 // Name as in diagnosis.json.
 std::string name_of(Verdict verdict);
 
+// A name with spaces in place of underscores.
+std::string in_words(std::string name);
+
 // One key of an experiment file with fitted numbers, in the unit in its name.
 struct FittedParameter {
   std::string key;                 // "dipole_A_m2"
@@ -31,7 +34,7 @@ struct FittedParameter {
 // An effect of the catalogue that acts in addition to those of the experiment.
 struct FoundEffect {
   std::string kind;          // name of a disturbance kind
-  double probability = 0.0;  // posterior, 0 to 1
+  double probability = 0.0;  // posterior of it or of an indistinguishable effect, 0 to 1
   std::vector<FittedParameter> parameters;
   std::vector<std::string> indistinguishable_from;  // kinds that explain these data equally well
   std::string explanation;                          // one sentence of physics
@@ -122,6 +125,12 @@ struct Holdout {
 // if that residual is below five standard errors of noise, and 0 if the other model diverges.
 double explained_fraction(double chi2_per_sample_before, double chi2_per_sample_after,
                           int64_t samples);
+
+// Mean of two values, weighted by their numbers of samples; 0 without samples.
+double weighted_mean(double a, int64_t samples_a, double b, int64_t samples_b);
+// Adds χ² and number of samples of more held-out data. The prediction of the larger excess is kept;
+// rms and explained fraction are unchanged.
+void add_held_out(const Holdout& more, Holdout& all);
 
 // An experiment that distinguishes effects which these data do not.
 struct Manoeuvre {
@@ -258,6 +267,10 @@ struct Diagnosis {
   std::optional<Replay> replay;
 };
 
+// Sentence for an effect that only fitted and held-out recordings together show.
+inline constexpr const char* undecided_effect =
+    "only fitted and held-out recordings together show an effect, and they do not determine which "
+    "one: see the alternatives";
 // Sentence for held-out data that do not distinguish the named effects from the nominal model.
 std::string untested_names(const Holdout& holdout);
 

@@ -52,10 +52,6 @@ void add_values(TomlDocument& document, TomlTable& table,
   for (const FittedParameter& p : parameters) document.set(table, p.key, value_of(p));
 }
 
-void add_kind(TomlDocument& document, TomlTable& table, const std::string& kind) {
-  document.set(table, "kind", {kind});
-}
-
 void add_effect(TomlDocument& document, const FoundEffect& effect, const std::string& table_name,
                 bool with_initial_states) {
   if (!effect.explanation.empty()) document.comment(effect.explanation);
@@ -64,7 +60,7 @@ void add_effect(TomlDocument& document, const FoundEffect& effect, const std::st
     document.comment("The recordings do not distinguish it from " + other + ".");
   }
   TomlTable& table = document.append(table_name);
-  add_kind(document, table, effect.kind);
+  document.set(table, "kind", {effect.kind});
   for (const auto& [key, value] : effect.texts) document.set(table, key, {value});
   if (table_name == "effect") {
     // Effects on light have no prior, so their errors are written as a comment.
@@ -88,7 +84,7 @@ void add_effect(TomlDocument& document, const FoundEffect& effect, const std::st
 void add_unnamed(TomlDocument& document, const FoundEffect& effect, bool with_initial_states) {
   document.comment("Also fitted, but not significant: " + effect.kind + ".");
   TomlTable& table = document.append("disturbance");
-  add_kind(document, table, effect.kind);
+  document.set(table, "kind", {effect.kind});
   add_values(document, table, effect.parameters);
   if (with_initial_states) add_values(document, table, effect.initial_states);
 }
@@ -100,7 +96,7 @@ void add_empirical(TomlDocument& document, const EmpiricalTorque& torque) {
   if (!torque.looks_like.empty()) document.comment("Looks like " + torque.looks_like + ".");
   if (torque.parameters.empty()) return;
   TomlTable& table = document.append("disturbance");
-  add_kind(document, table, "empirical_torque");
+  document.set(table, "kind", {std::string("empirical_torque")});
   for (const auto& [key, value] : torque.shape) {
     SettingsNode shape = parse_toml("value = " + value, "shape");
     document.set(table, key, std::move(std::get<TomlTable>(shape.value).at("value")));

@@ -73,7 +73,7 @@ struct Explanation {
   // Prediction of the held-out data, where computed.
   std::optional<double> holdout_chi2_per_sample = {};
   std::optional<Predictive> predictive = {};
-  // Excess of the held-out χ² over the value that the parameter errors predict (held_out.h)
+  // Excess of the held-out χ² over the value that the parameter errors predict (evidence.h)
   // [sigma].
   std::optional<double> held_out_sigma = {};
   // For each candidate the largest |θ|/σ of a single parameter of its size; empty: not computed.
@@ -116,28 +116,21 @@ std::vector<size_t> candidates_of(const Members<Start>& members) {
   return candidates;
 }
 
-// A fit as seen by the search: χ² with priors, number of residuals, and data χ² per residual.
-template <class F>
-concept Fitted = requires(const F& fit) {
-  { fit.chi2 } -> std::convertible_to<double>;
-  { fit.samples } -> std::convertible_to<int64_t>;
-  { fit.chi2_per_sample() } -> std::convertible_to<double>;
-};
-
-// A domain defines its trials, runs, starts and initial conditions. A Start holds the initial
-// values of a candidate's fit and the gain (fall of χ²) that a scan predicts, infinite without a
-// scan. A Begin holds the initial conditions of one run, which are nuisances. All functions are
-// const and are called from several threads.
+// A domain is a list of candidates with the limits of search and decision. It defines its trials,
+// runs, starts and initial conditions. A Start holds the initial values of a candidate's fit and
+// the gain (fall of χ²) that a scan predicts, infinite without a scan. A Begin holds the initial
+// conditions of one run, which are nuisances. All functions are const and are called from several
+// threads.
 template <class D>
 concept Domain = std::derived_from<typename D::Trial, Explanation> &&
-    Fitted<decltype(D::Trial::fit)> &&
+    std::derived_from<decltype(D::Trial::fit), Fit> &&
     requires(const D& domain, const typename D::Trial& trial, const typename D::Start& start,
              const std::vector<typename D::Run>& runs, const std::vector<size_t>& candidates,
              const std::vector<typename D::Begin>& begins, const Effort& effort, size_t count,
              const std::vector<Term<typename D::Start>>& terms,
              const Members<typename D::Start>& members, int threads) {
-  { domain.candidates() } -> std::same_as<const std::vector<CandidateTraits>&>;
-  { domain.limits() } -> std::same_as<const Thresholds&>;
+  requires std::derived_from<std::decay_t<decltype(domain.list[0])>, CandidateTraits>;
+  { domain.limits } -> std::convertible_to<const Thresholds&>;
 
   // Initial values of a candidate that needs no scan.
   { domain.start_of(count) } -> std::same_as<typename D::Start>;
@@ -200,30 +193,26 @@ inline bool includes(const std::vector<size_t>& all, const std::vector<size_t>& 
 }
 
 // Whether any of these candidates has a place, or is empirical.
-inline bool has_place(const std::vector<size_t>& among, const std::vector<CandidateTraits>& all) {
+template <std::derived_from<CandidateTraits> C>
+bool has_place(const std::vector<size_t>& among, const std::vector<C>& all) {
   return std::ranges::any_of(among, [&](size_t c) { return all[c].has_place; });
 }
-inline bool has_empirical(const std::vector<size_t>& among,
-                          const std::vector<CandidateTraits>& all) {
+template <std::derived_from<CandidateTraits> C>
+bool has_empirical(const std::vector<size_t>& among, const std::vector<C>& all) {
   return std::ranges::any_of(among, [&](size_t c) { return all[c].is_empirical; });
 }
 
-// Whether `among` contains the name of `candidate` as often as allowed.
-inline bool acts_already(const std::vector<size_t>& among, size_t candidate,
-                         const std::vector<CandidateTraits>& all) {
-  const auto count = std::count_if(among.begin(), among.end(), [&](size_t other) {
-    return all[other].name == all[candidate].name;
-  });
-  return static_cast<size_t>(count) >= all[candidate].most;
-}
-
-// The candidates that may be added to `among` and whose traits satisfy the condition.
-template <class Condition>
-std::vector<size_t> addable(const std::vector<size_t>& among,
-                            const std::vector<CandidateTraits>& all, const Condition& condition) {
+// The candidates whose traits satisfy the condition and whose name `among` contains less often than
+// allowed.
+template <std::derived_from<CandidateTraits> C, class Condition>
+std::vector<size_t> addable(const std::vector<size_t>& among, const std::vector<C>& all,
+                            const Condition& condition) {
   std::vector<size_t> candidates;
   for (size_t c = 0; c < all.size(); ++c) {
-    if (std::invoke(condition, all[c]) && !acts_already(among, c, all)) candidates.push_back(c);
+    const auto count =
+        std::ranges::count_if(among, [&](size_t other) { return all[other].name == all[c].name; });
+    const bool may_act = static_cast<size_t>(count) < all[c].most;
+    if (may_act && std::invoke(condition, all[c])) candidates.push_back(c);
   }
   return candidates;
 }

@@ -21,7 +21,7 @@ class Rounds {
   // `base` has no candidates and is fitted to the set; at most `max_effects` are combined.
   Rounds(const D& domain, const RunSet<D>& set, const Trial& base, size_t max_effects, int threads)
       : domain_(domain),
-        limits_(domain.limits()),
+        limits_(domain.limits),
         set_(set),
         max_effects_(max_effects),
         threads_(threads),
@@ -60,10 +60,10 @@ class Rounds {
       const Trial before = *std::find_if(trials_.begin(), trials_.end(), [&](const Trial& t) {
         return same_candidates(t.candidates, at.candidates);
       });
-      Trial best = best_to_continue(swinging);
+      Trial best = best_allowed(trials_, swinging);
       if (is_first && scans && may_be_surrogates(best)) {
         const std::vector<size_t> fast = search_oscillating_effects(best);
-        best = best_to_continue(swinging);
+        best = best_allowed(trials_, swinging);
         if (!fast.empty() && includes(best.candidates, fast)) return;
       }
       const bool gained =
@@ -109,10 +109,10 @@ class Rounds {
   // combination is significant, and for an effect that leaves a residual. The residual may cancel
   // in means of neighbours, but it raises χ².
   bool may_be_surrogates(const Trial& at) const {
-    const bool swings = std::ranges::any_of(
-        at.candidates, [&](size_t c) { return domain_.candidates()[c].is_fast; });
+    const bool swings =
+        std::ranges::any_of(at.candidates, [&](size_t c) { return domain_.list[c].is_fast; });
     if (at.candidates.empty() || swings) return false;
-    if (domain_.candidates()[at.candidates.front()].is_limit_of_swinging) return true;
+    if (domain_.list[at.candidates.front()].is_limit_of_swinging) return true;
     const double most = limits_.search.explained_sigma;
     const bool is_vague = std::ranges::any_of(at.largest_component, [&](double sigma) {
       return sigma < limits_.decision.min_significance;
@@ -131,7 +131,7 @@ class Rounds {
   }
 
   bool has_empirical(const Trial& at) const {
-    return inference::has_empirical(at.candidates, domain_.candidates());
+    return inference::has_empirical(at.candidates, domain_.list);
   }
 
   static bool has_empirical(const Subset& s, const LinearProblem& problem) {
@@ -167,7 +167,7 @@ class Rounds {
   // Candidates with linear strengths that need no scan at the full sampling rate.
   Terms<D> slow_terms(const Trial& at, const Runs& averages) const {
     const auto slow_and = [&](bool is_linear) {
-      return addable(at.candidates, domain_.candidates(), [&](const CandidateTraits& c) {
+      return addable(at.candidates, domain_.list, [&](const CandidateTraits& c) {
         return !c.is_fast && c.has_strength && c.is_linear == is_linear;
       });
     };
@@ -330,7 +330,7 @@ class Rounds {
   // Fits candidates that are too nonlinear for a forecast, one at a time.
   std::vector<Trial> each_alone(const Trial& at) const {
     const std::vector<size_t> nonlinear =
-        addable(at.candidates, domain_.candidates(), &CandidateTraits::is_fitted_first);
+        addable(at.candidates, domain_.list, &CandidateTraits::is_fitted_first);
     if (nonlinear.empty() || at.candidates.size() >= max_effects_) return {};
     const Runs averages = slow_runs(domain_, at, set_);
     std::vector<Members<typename D::Start>> chosen;
@@ -345,8 +345,8 @@ class Rounds {
   std::vector<Trial> switched_on(const Trial& at) const {
     if (at.candidates.size() >= max_effects_) return {};
     Terms<D> terms;
-    for (const size_t c : addable(at.candidates, domain_.candidates(),
-                                  [](const CandidateTraits& c) { return c.parameters == 0; })) {
+    for (const size_t c : addable(at.candidates, domain_.list,
+                                  [](const CandidateTraits& t) { return t.parameters == 0; })) {
       terms.push_back({c, domain_.start_of(c)});
     }
     return extend_by_each(domain_, at, terms, set_.runs, threads_);
@@ -357,7 +357,7 @@ class Rounds {
   // and a fit does not move far from it.
   std::vector<Trial> relocated(const Trial& at) const {
     std::vector<Trial> found;
-    const std::vector<CandidateTraits>& all = domain_.candidates();
+    const auto& all = domain_.list;
     const bool is_alone = at.candidates.size() < 2 && !has_place(at.candidates, all);
     if (is_alone || (explains(at) && !has_empirical(at))) return found;
     const Runs averages = slow_runs(domain_, at, set_);
@@ -386,7 +386,7 @@ class Rounds {
   std::vector<Trial> scanned(const Trial& at) const {
     if (at.candidates.size() >= max_effects_) return {};
     const std::vector<size_t> fast =
-        addable(at.candidates, domain_.candidates(), [](const CandidateTraits& c) {
+        addable(at.candidates, domain_.list, [](const CandidateTraits& c) {
           return c.is_fast || (!c.has_strength && c.parameters > 0);
         });
     const Terms<D> terms =
@@ -416,15 +416,6 @@ class Rounds {
       return;
     }
     trials_.push_back(std::move(trial));
-  }
-
-  // The allowed trial of largest evidence that contains the candidates.
-  const Trial& best_to_continue(const std::vector<size_t>& containing) const {
-    for (const size_t i : by_evidence(trials_)) {
-      const Trial& t = trials_[i];
-      if (t.objection.empty() && includes(t.candidates, containing)) return t;
-    }
-    return trials_.front();
   }
 
   const D& domain_;

@@ -12,7 +12,7 @@ class Search {
   using Runs = std::vector<typename D::Run>;
 
   Search(const D& domain, const Trial& nominal, const Runs& runs, int threads)
-      : domain_(domain), limits_(domain.limits()), runs_(runs), threads_(threads) {
+      : domain_(domain), limits_(domain.limits), runs_(runs), threads_(threads) {
     trials_.push_back(nominal);
   }
 
@@ -29,7 +29,7 @@ class Search {
       // wider here: a trial from the pieces is a usable start even if noise is understated or a
       // part is unknown.
       constexpr double as_near = 10.0;
-      const Trial& best = trials_[best_allowed()];
+      const Trial& best = best_allowed(trials_);
       const bool is_elsewhere =
           !(best.fit.chi2_per_sample() < as_near * limits_.diverged_chi2_per_sample);
       if (is_elsewhere || best.fit.samples != nominal.fit.samples) {
@@ -88,7 +88,7 @@ class Search {
     std::vector<bool> is_chosen(found.size(), false);
     for (size_t i = 0; i < found.size() && chosen < most; ++i) {
       if (!is_near(found[i], best, limits_) || !found[i].objection.empty()) continue;
-      const bool has_law = has_empirical(found[i].candidates, domain_.candidates());
+      const bool has_law = has_empirical(found[i].candidates, domain_.list);
       if (has_law && ++with_law > most / 2) continue;
       is_chosen[i] = true;
       ++chosen;
@@ -101,13 +101,6 @@ class Search {
     }
     found = std::move(ordered);
     return chosen;
-  }
-
-  size_t best_allowed() const {
-    for (const size_t i : by_evidence(trials_)) {
-      if (trials_[i].objection.empty()) return i;
-    }
-    return 0;
   }
 
   const D& domain_;

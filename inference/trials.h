@@ -34,7 +34,7 @@ bool is_near(const Trial& trial, const Trial& best, const Thresholds& limits) {
 template <Domain D>
 void refit_from_best(const D& domain, const std::vector<typename D::Run>& runs,
                      const typename D::Trial& best, typename D::Trial& trial) {
-  const Thresholds& limits = domain.limits();
+  const Thresholds& limits = domain.limits;
   if (trial.fit.chi2 < best.fit.chi2 + limits.leaders.worth_a_fit) return;
   const Effort brief{.max_iterations = limits.fitting.brief_iterations};
   const Effort effort =
@@ -51,7 +51,7 @@ void converge_leaders(const D& domain, const std::vector<typename D::Run>& runs,
                       std::vector<typename D::Trial>& found,
                       std::vector<typename D::Trial>& parents) {
   using Trial = typename D::Trial;
-  const Thresholds& limits = domain.limits();
+  const Thresholds& limits = domain.limits;
   std::vector<size_t> leaders = by_evidence(found);
   if (leaders.empty()) return;
   leaders.resize(std::min(limits.leaders.max_leaders, leaders.size()));
@@ -77,10 +77,10 @@ typename D::Trial with_instruments(const D& domain, const typename D::Trial& tri
                                    const std::vector<typename D::Run>& runs) {
   Members<typename D::Start> members = members_of(domain.terms_of(trial));
   std::erase_if(members, [&](const auto& member) {
-    return !domain.candidates()[member.term.candidate].is_of_instrument;
+    return !domain.list[member.term.candidate].is_of_instrument;
   });
   if (members.empty()) return base;
-  const Effort effort{.max_iterations = domain.limits().fitting.trial_iterations};
+  const Effort effort{.max_iterations = domain.limits.fitting.trial_iterations};
   return domain.assemble(trial, members, runs, effort);
 }
 
@@ -95,7 +95,7 @@ struct RunSet {
 template <Domain D>
 std::vector<typename D::Run> slow_runs(const D& domain, const typename D::Trial& about,
                                        const RunSet<D>& set) {
-  return domain.average(about, set.runs, domain.limits().fitting.slow_blocks / set.pieces);
+  return domain.average(about, set.runs, domain.limits.fitting.slow_blocks / set.pieces);
 }
 
 // Averages and pieces overestimate some evidence. The first `fitted` trials are fitted to all
@@ -114,6 +114,17 @@ template <class Trial>
 void sort_by_evidence(std::vector<Trial>& trials) {
   std::stable_sort(trials.begin(), trials.end(),
                    [](const Trial& a, const Trial& b) { return a.log_evidence > b.log_evidence; });
+}
+
+// The trial of largest evidence that physics allows and that contains these candidates; the first
+// trial if there is none.
+template <class Trial>
+const Trial& best_allowed(const std::vector<Trial>& trials,
+                          const std::vector<size_t>& containing = {}) {
+  for (const size_t i : by_evidence(trials)) {
+    if (trials[i].objection.empty() && includes(trials[i].candidates, containing)) return trials[i];
+  }
+  return trials.front();
 }
 
 // Keeps the best of trials with equal candidates in any order.
@@ -158,7 +169,7 @@ std::vector<typename D::Trial> extend_by_each(const D& domain, const typename D:
                                               const std::vector<typename D::Run>& runs,
                                               int threads) {
   using Trial = typename D::Trial;
-  const Effort effort{.max_iterations = domain.limits().fitting.trial_iterations};
+  const Effort effort{.max_iterations = domain.limits.fitting.trial_iterations};
   std::vector<Trial> trials(terms.size());
   parallel_for(terms.size(), threads, [&](size_t i) {
     trials[i] = domain.extend(parent, terms[i].candidate, terms[i].start, runs, effort);
@@ -184,7 +195,7 @@ std::pair<RunSet<D>, typename D::Trial> near_pieces(const D& domain,
                                                     const std::vector<typename D::Run>& runs) {
   constexpr double little_more = 3.0;
   std::vector<std::pair<RunSet<D>, typename D::Trial>> tried{{{runs}, parent}};
-  for (const size_t count : domain.limits().search.pieces) {
+  for (const size_t count : domain.limits.search.pieces) {
     std::vector<typename D::Run> shorter = domain.cut(runs, count);
     // There are too few readings to cut further.
     if (shorter.empty()) break;
@@ -192,7 +203,7 @@ std::pair<RunSet<D>, typename D::Trial> near_pieces(const D& domain,
     typename D::Trial near = domain.refit(
         parent, pieces.runs, domain.initial_conditions_from_data(parent, pieces.runs), {});
     tried.emplace_back(std::move(pieces), std::move(near));
-    if (!has_diverged(tried.back().second, domain.limits())) return std::move(tried.back());
+    if (!has_diverged(tried.back().second, domain.limits)) return std::move(tried.back());
   }
   const double enough = little_more * tried.back().second.fit.chi2_per_sample();
   return std::move(*std::find_if(tried.begin(), tried.end(), [&](const auto& one) {

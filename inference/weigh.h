@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "inference/held_out.h"
+#include "inference/estimator/evidence.h"
 #include "inference/rounds.h"
 
 namespace photorque::inference {
@@ -36,7 +36,7 @@ class Weighing {
   Weighing(const D& domain, const Runs& train, const Runs& held, int threads,
            std::vector<Trial>& trials)
       : domain_(domain),
-        limits_(domain.limits()),
+        limits_(domain.limits),
         train_(train),
         held_(held),
         threads_(threads),
@@ -61,12 +61,9 @@ class Weighing {
     exchange_places();
     restart_from_joint_fit();
     for (const Leader& leader : leaders_) {
-      Trial& train = trials_[leader.at];
-      train.predictive = predictive_of(train, leader.joint);
-      train.held_out_sigma = sigma_of_prediction(train, leader.joint);
-    }
-    for (const Leader& leader : leaders_) {
       Trial& trial = trials_[leader.at];
+      trial.predictive = predictive_of(trial, leader.joint);
+      trial.held_out_sigma = sigma_of_prediction(trial, leader.joint);
       trial.log_evidence = leader.joint.log_evidence;
       trial.joint_significance = leader.joint.significance;
       if (trial.objection.empty()) trial.objection = leader.joint.objection;
@@ -169,14 +166,11 @@ class Weighing {
   // Excess of the held-out χ² over the value that the parameter errors of the train fit predict
   // [sigma]; infinite if the model cannot be propagated along the held-out data; 0 where unknown.
   double sigma_of_prediction(const Trial& train, const Trial& joint) const {
-    if constexpr (std::derived_from<std::decay_t<decltype(train.fit)>, Fit>) {
-      if (train.holdout_chi2_per_sample == infinity) return infinity;
-      if (train.holdout_chi2_per_sample) {
-        return inference::held_out_sigma(train.fit, joint.fit, *train.holdout_chi2_per_sample,
-                                         noise_of(train));
-      }
-    }
-    return 0.0;
+    if (train.holdout_chi2_per_sample == infinity) return infinity;
+    return train.holdout_chi2_per_sample
+               ? held_out_sigma(train.fit, joint.fit, *train.holdout_chi2_per_sample,
+                                noise_of(train))
+               : 0.0;
   }
 
   // The allowed leader of largest evidence on all runs.
@@ -200,9 +194,7 @@ class Weighing {
                  held = static_cast<double>(joint.fit.samples) - fitted;
     result.chi2_per_sample = (joint.fit.chi2 - train.fit.chi2) / held;
     result.log_score = joint.log_evidence - train.log_evidence;
-    if constexpr (requires { predict_held_out(train.fit, joint.fit); }) {
-      result.expected_chi2_per_sample = predict_held_out(train.fit, joint.fit).chi2_per_sample;
-    }
+    result.expected_chi2_per_sample = predict_held_out(train.fit, joint.fit).chi2_per_sample;
     if (!std::isfinite(result.chi2_per_sample)) {
       result.sigma = limits_.noise.excess_unknown;
       return result;
@@ -229,7 +221,7 @@ class Weighing {
     if (has_diverged(from.joint, limits_) || !std::isfinite(from.joint.fit.chi2)) return;
     Rounds<D> rounds(domain_, {all_runs_}, nominal().joint, limits_.search.max_effects, threads_);
     // If the start contains an empirical law, the train runs have been scanned for fast effects.
-    const bool has_law = has_empirical(from.joint.candidates, domain_.candidates());
+    const bool has_law = has_empirical(from.joint.candidates, domain_.list);
     std::vector<Trial> found = rounds.run(from.joint, !has_law);
     size_t added = 0;
     for (const size_t i : by_evidence(found)) {
@@ -238,7 +230,7 @@ class Weighing {
         break;
       }
       if (!found[i].objection.empty()) continue;
-      const bool is_elsewhere = has_place(found[i].candidates, domain_.candidates());
+      const bool is_elsewhere = has_place(found[i].candidates, domain_.list);
       if (leads(found[i].candidates) && !is_elsewhere) continue;
       Trial joint = domain_.refit(found[i], all_runs_, domain_.initial_conditions_of(found[i]),
                                   until_convergence(limits_));
@@ -252,7 +244,7 @@ class Weighing {
   // them, or the search may have fitted another oscillation to the residual of the limit.
   void search_swings() {
     const Leader from = best();
-    const std::vector<CandidateTraits>& all = domain_.candidates();
+    const auto& all = domain_.list;
     const auto is_limit = [&](size_t c) { return all[c].is_limit_of_swinging; };
     const auto swings = [&](size_t c) { return all[c].swings; };
     if (std::ranges::none_of(from.joint.candidates, is_limit)) return;
@@ -275,7 +267,7 @@ class Weighing {
   // it. Each oscillation of the best explanation is removed, and all are scanned again.
   void relocate_oscillations() {
     const Leader from = best();
-    const std::vector<CandidateTraits>& all = domain_.candidates();
+    const auto& all = domain_.list;
     const auto oscillates = [](const CandidateTraits& c) { return c.is_fast && !c.swings; };
     const Effort effort = within_reach(until_convergence(limits_), from.joint, limits_);
     for (const size_t candidate : from.joint.candidates) {
@@ -322,7 +314,7 @@ class Weighing {
   // place, until no exchange improves the evidence.
   void exchange_places() {
     constexpr int most_rounds = 3;
-    const std::vector<CandidateTraits>& all = domain_.candidates();
+    const auto& all = domain_.list;
     for (int round = 0; round < most_rounds; ++round) {
       const Leader from = best();
       const auto terms = domain_.terms_of(from.joint);
@@ -339,7 +331,7 @@ class Weighing {
   void exchange(const Leader& from, const Terms<D>& terms, size_t which) {
     // The forecast is crude: a cell has little effect until it limits its string.
     constexpr double forecast_error = 20.0;
-    const std::vector<CandidateTraits>& all = domain_.candidates();
+    const auto& all = domain_.list;
     const size_t at = leader_of(candidates_of(members_of(terms, which)));
     if (at == leaders_.size()) return;
     const Leader* without = &leaders_[at];
@@ -376,7 +368,7 @@ class Weighing {
     const std::vector<size_t> candidates = candidates_of(members);
     // Nonlinear candidates are refitted even if the set leads already: the result depends on the
     // start.
-    const auto is_linear = [&](size_t c) { return domain_.candidates()[c].is_linear; };
+    const auto is_linear = [&](size_t c) { return domain_.list[c].is_linear; };
     if (leads(candidates) && std::ranges::all_of(candidates, is_linear)) return;
     // Removing the candidate may move the others far, in particular nominal values that it
     // replaced.
@@ -450,7 +442,7 @@ class Weighing {
   // The few untried candidates with the largest predicted gains when added to `joint`, which is
   // fitted to all runs: some physical, some empirical.
   std::vector<size_t> worth_adding(const Trial& joint, const std::vector<size_t>& parent) const {
-    const std::vector<CandidateTraits>& all = domain_.candidates();
+    const auto& all = domain_.list;
     std::vector<size_t> untried = addable(parent, all, &CandidateTraits::is_linear);
     std::erase_if(untried, [&](size_t c) {
       std::vector<size_t> together = parent;

@@ -7,9 +7,9 @@
 #include <ranges>
 
 #include "core/numerics/median.h"
+#include "core/numerics/root.h"
 
 namespace photorque::inference {
-
 namespace {
 
 // Expected value of reading n: the median of predictions from both sides and from either side. A
@@ -30,6 +30,25 @@ double expected(const std::vector<double>& r, size_t n) {
   if (n >= 2 && predictions.size() < 3) predictions.push_back(r[n - 2]);
   if (n + 2 < r.size() && predictions.size() < 3) predictions.push_back(r[n + 2]);
   return upper_median(predictions);
+}
+
+// Standard normal deviate that is exceeded with probability p ≤ 1/2.
+double deviate_exceeded_with(double p) {
+  const auto is_below = [p](double x) { return 0.5 * std::erfc(x / std::numbers::sqrt2) > p; };
+  return bisect(0.0, 40.0, is_below, {60}).low;
+}
+
+// Fraction of all sign assignments for which the sum of the positive ranks is at most `sum`.
+// `doubled_ranks`: twice each rank, which is an integer even where ties have a mean rank.
+double fraction_up_to(const std::vector<size_t>& doubled_ranks, double sum) {
+  const auto last = static_cast<size_t>(std::lround(2.0 * sum));
+  std::vector<double> ways(last + 1, 0.0);
+  ways[0] = 1.0;
+  for (const size_t rank : doubled_ranks) {
+    for (size_t total = last; total >= rank; --total) ways[total] += ways[total - rank];
+  }
+  return std::ldexp(std::accumulate(ways.begin(), ways.end(), 0.0),
+                    -static_cast<int>(doubled_ranks.size()));
 }
 
 }  // namespace
@@ -112,33 +131,6 @@ double mean_sigma(std::vector<double> differences) {
                         std::sqrt(freedom * std::log1p(t * t / freedom));
   return std::copysign(normal, t);
 }
-
-namespace {
-
-// Standard normal deviate that is exceeded with probability p ≤ 1/2.
-double deviate_exceeded_with(double p) {
-  double low = 0.0, high = 40.0;
-  for (int halving = 0; halving < 60; ++halving) {
-    const double middle = 0.5 * (low + high);
-    (0.5 * std::erfc(middle / std::numbers::sqrt2) > p ? low : high) = middle;
-  }
-  return low;
-}
-
-// Fraction of all sign assignments for which the sum of the positive ranks is at most `sum`.
-// `doubled_ranks`: twice each rank, which is an integer even where ties have a mean rank.
-double fraction_up_to(const std::vector<size_t>& doubled_ranks, double sum) {
-  const auto last = static_cast<size_t>(std::lround(2.0 * sum));
-  std::vector<double> ways(last + 1, 0.0);
-  ways[0] = 1.0;
-  for (const size_t rank : doubled_ranks) {
-    for (size_t total = last; total >= rank; --total) ways[total] += ways[total - rank];
-  }
-  return std::ldexp(std::accumulate(ways.begin(), ways.end(), 0.0),
-                    -static_cast<int>(doubled_ranks.size()));
-}
-
-}  // namespace
 
 double signed_rank_sigma(const std::vector<double>& differences) {
   std::vector<double> x;

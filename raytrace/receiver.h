@@ -25,10 +25,10 @@ struct Hits {
 
   int count = 0;
   int bands = 1;              // only this many rows of the band columns are filled
+  int depth = 0;              // of all hits; 0: directly from the emitter
   Column<uint32_t> instance;  // index into Scene::instances
   Column<uint32_t> triangle;  // index into that mesh's triangles
   Column<uint8_t> front;      // 1: hit from the front, 0: from the back
-  Column<uint16_t> depth;     // 0: directly from the emitter
   // Directions of the arriving rays: unit vectors in single precision, `count` entries each. They
   // point into the tracer's memory and are valid only while it processes these hits.
   std::array<const float*, 3> direction{};

@@ -47,6 +47,11 @@ struct Scene {
   const OpticalSurface& surface(const Instance& instance, bool front) const {
     return surfaces[front ? instance.front_surface : instance.back_surface];
   }
+  // Whether either side of an instance transmits light.
+  bool transmits(const Instance& instance) const {
+    return any_positive(surface(instance, true).transmitted) ||
+           any_positive(surface(instance, false).transmitted);
+  }
   // Box along the body axes around one part or all parts; empty if there are no vertices.
   Eigen::AlignedBox3d box_of(const Instance& instance) const;
   Eigen::AlignedBox3d box() const;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/numerics/median.h"
 #include "raytrace/receiver.h"
@@ -92,16 +91,6 @@ namespace {
 // The two channels are neighbours in memory, so that one instruction adds both.
 constexpr size_t incident = 0, absorbed = 1, channels = 2;
 
-struct Replicates {
-  int first = 0;
-  int count = 0;
-};
-
-Estimate estimate(std::span<const double> values, double bound) {
-  if (values.size() == 1) return {values[0], 0.0};
-  return with_bound(estimate_from_replicates(values), bound);
-}
-
 // Sum over the bands [first_band, last_band) of one channel.
 double sum_bands(std::span<const double> bin, size_t channel, size_t first_band, size_t last_band) {
   double sum = 0.0;
@@ -109,48 +98,17 @@ double sum_bands(std::span<const double> bin, size_t channel, size_t first_band,
   return sum;
 }
 
-FluxLayer layer(const SurfaceGrid& grid, size_t bands, const BinSums& sums, Replicates replicates,
-                size_t channel, size_t first_band, size_t last_band) {
-  const size_t stride = bands * channels;
-  const size_t bounced = grid.bins() * stride;
-  const auto count = static_cast<size_t>(replicates.count);
-  std::vector<double> totals(count, 0.0), values(count);
-  FluxLayer result;
-  double all_bounds = 0.0;
+FluxLayer layer(const SurfaceGrid& grid, size_t bands, const BinSums& sums, size_t channel,
+                size_t first_band, size_t last_band) {
+  GridEstimates power_W = estimates_on(grid, sums, [&](std::span<const double> half, size_t bin) {
+    return sum_bands(half.subspan(bin * bands * channels), channel, first_band, last_band);
+  });
+  FluxLayer result{power_W.total, std::move(power_W.per_bin)};
   for (size_t bin = 0; bin < grid.bins(); ++bin) {
-    for (size_t r = 0; r < count; ++r) {
-      const auto all = sums.of(replicates.first + static_cast<int>(r)).subspan(bin * stride);
-      values[r] = sum_bands(all, channel, first_band, last_band) +
-                  sum_bands(all.subspan(bounced), channel, first_band, last_band);
-      totals[r] += values[r];
-    }
-    const double bound = sums.bound.empty() ? 0.0
-                                            : sum_bands(std::span(sums.bound).subspan(bin * stride),
-                                                        channel, first_band, last_band);
-    all_bounds += bound;
-    const Estimate power_W = estimate(values, bound);
-    const double area_m2 = grid.area_m2[bin];
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    result.per_bin_W_m2.push_back(
-        area_m2 > 0.0 ? Estimate{power_W.value / area_m2, power_W.standard_error / area_m2}
-                      : Estimate{nan, nan});
+    result.per_bin_W_m2[bin].value /= grid.area_m2[bin];
+    result.per_bin_W_m2[bin].standard_error /= grid.area_m2[bin];
   }
-  result.power_W = estimate(totals, all_bounds);
   return result;
-}
-
-FluxMap make_flux_map(const SurfaceGrid& grid, const Bands& bands, const BinSums& sums,
-                      Replicates replicates) {
-  const auto count = static_cast<size_t>(bands.count());
-  const auto make = [&](size_t channel, size_t first, size_t last) {
-    return layer(grid, count, sums, replicates, channel, first, last);
-  };
-  FluxMap map{grid, bands, make(incident, 0, count), make(absorbed, 0, count), {}, {}};
-  for (size_t band = 0; band < count; ++band) {
-    map.incident_by_band.push_back(make(incident, band, band + 1));
-    map.absorbed_by_band.push_back(make(absorbed, band, band + 1));
-  }
-  return map;
 }
 
 // "700-760nm"; "below_700nm" and "above_760nm" for the open bands at either end.
@@ -210,7 +168,7 @@ void FluxMapReceiver::score(const Hits& hits, std::span<double> sums) const {
   BinnedHits binned;
   binner_.bin(hits, binned);
   const auto bands = static_cast<size_t>(bands_.count());
-  const size_t offset = hits.depth[0] == 0 ? 0 : direct_entries();
+  const size_t offset = hits.depth == 0 ? 0 : direct_entries();
   for (size_t band = 0; band < bands; ++band) {
     const double* in = hits.incident_W[band].data();
     const double* kept = hits.absorbed_W[band].data();
@@ -222,11 +180,16 @@ void FluxMapReceiver::score(const Hits& hits, std::span<double> sums) const {
 }
 
 FluxMap FluxMapReceiver::flux_map(const BinSums& sums) const {
-  return make_flux_map(grid_, bands_, sums, {0, sums.replicates});
-}
-
-FluxMap FluxMapReceiver::flux_map(const BinSums& sums, int replicate) const {
-  return make_flux_map(grid_, bands_, sums, {replicate, 1});
+  const auto count = static_cast<size_t>(bands_.count());
+  const auto make = [&](size_t channel, size_t first, size_t last) {
+    return layer(grid_, count, sums, channel, first, last);
+  };
+  FluxMap map{grid_, bands_, make(incident, 0, count), make(absorbed, 0, count), {}, {}};
+  for (size_t band = 0; band < count; ++band) {
+    map.incident_by_band.push_back(make(incident, band, band + 1));
+    map.absorbed_by_band.push_back(make(absorbed, band, band + 1));
+  }
+  return map;
 }
 
 std::vector<double> FluxMapReceiver::incident_W(std::span<const double> bins) const {

@@ -38,7 +38,6 @@ class FluxMapReceiver final : public Receiver {
   FluxMapReceiver(std::string name, const Scene& scene, SurfaceGrid grid);
 
   size_t bins() const override;
-  // All hits of one call must have the same depth.
   void score(const Hits& hits, std::span<double> sums) const override;
   // Number of bins of direct light; they are the first half of bins(). The incident power in a band
   // of a bin of the grid is at entry(bin, band), the absorbed power at the next index.
@@ -50,8 +49,6 @@ class FluxMapReceiver final : public Receiver {
 
   // Requires at least two replicates.
   FluxMap flux_map(const BinSums& sums) const;
-  // From one replicate; standard errors are zero.
-  FluxMap flux_map(const BinSums& sums, int replicate) const;
   // Incident power in all bands per bin of the grid [W], from the bins of one replicate or of a
   // mean over replicates.
   std::vector<double> incident_W(std::span<const double> bins) const;

@@ -69,10 +69,8 @@ HitBinner::HitBinner(const Scene& scene, const SurfaceGrid& grid)
 void HitBinner::set_plane(const SurfaceGrid& grid) {
   const double u_scale = grid.width / (grid.u_high - grid.u_low);
   const double v_scale = grid.height / (grid.v_high - grid.v_low);
-  for (size_t axis = 0; axis < 3; ++axis) {
-    column_.slope[axis] = u_scale * grid.u_axis_body[static_cast<Eigen::Index>(axis)];
-    row_.slope[axis] = v_scale * grid.v_axis_body[static_cast<Eigen::Index>(axis)];
-  }
+  column_.slope = u_scale * grid.u_axis_body;
+  row_.slope = v_scale * grid.v_axis_body;
   column_.offset = -u_scale * grid.u_low;
   row_.offset = -v_scale * grid.v_low;
 }

@@ -1,8 +1,9 @@
-// Assignment of hits to the bins of a surface grid.
+// Assignment of hits to the bins of a surface grid, and estimates per bin.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "raytrace/receiver.h"
@@ -38,6 +39,36 @@ void for_each_binned(const BinnedHits& binned, const Add& add) {
   }
 }
 
+// Estimates per bin of a grid, NaN in bins without surface, and of their total.
+struct GridEstimates {
+  std::vector<Estimate> per_bin;
+  Estimate total;
+};
+
+// Estimates from bins whose first half is direct light and whose second half, in the same order, is
+// bounced light. value(half, bin) is the value of a bin of the grid in one half.
+template <typename Value>
+GridEstimates estimates_on(const SurfaceGrid& grid, const BinSums& sums, const Value& value) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> values(static_cast<size_t>(sums.replicates)), totals(values.size(), 0.0);
+  double bounds = 0.0;
+  GridEstimates found;
+  for (size_t bin = 0; bin < grid.bins(); ++bin) {
+    for (size_t r = 0; r < values.size(); ++r) {
+      const auto all = sums.of(static_cast<int>(r));
+      values[r] = value(all, bin) + value(all.subspan(sums.bins / 2), bin);
+      totals[r] += values[r];
+    }
+    const double bound = sums.bound.empty() ? 0.0 : value(std::span(sums.bound), bin);
+    bounds += bound;
+    found.per_bin.push_back(grid.area_m2[bin] > 0.0
+                                ? with_bound(estimate_from_replicates(values), bound)
+                                : Estimate{nan, nan});
+  }
+  found.total = with_bound(estimate_from_replicates(totals), bounds);
+  return found;
+}
+
 // Looks up hits in a grid. A hit counts if its instance belongs to the grid, its side counts and
 // its triangle faces the requested direction. The position then gives the bin. Immutable; keeps the
 // necessary parts of the scene.
@@ -52,7 +83,7 @@ class HitBinner {
  private:
   // A coordinate in units of cells: slope · position + offset.
   struct CellCoordinate {
-    std::array<double, 3> slope{};
+    Vec3 slope = Vec3::Zero();
     double offset = 0.0;
     double last = 0.0;  // index of the last cell
   };

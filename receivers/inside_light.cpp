@@ -5,21 +5,13 @@
 #include "core/text/format.h"
 
 namespace photorque {
-namespace {
-
-bool lets_light_through(const OpticalSurface& surface) {
-  const auto some = [](double fraction) { return fraction > 0.0; };
-  return std::any_of(surface.transmitted.begin(), surface.transmitted.end(), some);
-}
-
-}  // namespace
 
 InsideLightReceiver::InsideLightReceiver(const Scene& scene)
     : part_of_instance_(scene.instances.size()) {
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     if (!scene.meshes[instance.mesh].encloses) continue;
-    if (lets_light_through(scene.surfaces[instance.front_surface])) continue;
+    if (any_positive(scene.surfaces[instance.front_surface].transmitted)) continue;
     instances_.push_back(i);
   }
   const auto parts = static_cast<uint32_t>(instances_.size());

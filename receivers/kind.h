@@ -42,9 +42,7 @@ struct ReceiverKind {
 // Every kind named in receivers/CMakeLists.txt, in that order.
 std::vector<ReceiverKind> all_receiver_kinds();
 
-// Target of a receiver, and the name of its results. Keys:
-//   node  name of a node of the scene (or its path, or part of it); includes the nodes below it
-//   name  of the results; a file stem. Default: the node's name
+// Target of a receiver, and the name of its results.
 struct ReceiverTarget {
   std::string name;
   std::vector<uint32_t> instances;  // of the scene
@@ -61,11 +59,7 @@ ReceiverTarget read_target(const Settings& settings, const Scene& scene);
 ReceiverTarget read_target_or_all(const Settings& settings, const Scene& scene,
                                   const std::string& otherwise_name);
 
-// Makes the grid from the keys
-//   bins    [along u, along v], 1 … 4096 each; default [100, 100]
-//   over    "plane" (default) or "uv": bins over a plane or over the texture coordinates
-//   side    "front", "back" or "both": side of the surface that counts
-//   facing  [x, y, z], optional: only faces turned towards this body direction, seen along it
+// Makes the grid from the keys of surface_grid_keys().
 SurfaceGrid read_surface_grid(const Settings& settings, const Scene& scene,
                               const ReceiverTarget& target, Side default_side);
 

@@ -2,21 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+#include <ranges>
+
+#include "core/numerics/divide_convex.h"
 
 namespace photorque {
 namespace {
-
-struct Bounds {
-  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
-  Vec2 high = -Vec2::Constant(std::numeric_limits<double>::infinity());
-
-  void include(const Vec2& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-};
 
 InputError error(const SurfaceGridOptions& options, const std::string& found,
                  const std::string& expected) {
@@ -57,17 +49,17 @@ Vec2 plane_coordinates(const SurfaceGrid& grid, const Vec3& position_body_m) {
 
 void fit_extent(SurfaceGrid& grid, std::span<const SurfaceFace> faces,
                 const SurfaceGridOptions& options) {
-  Bounds bounds;
+  Eigen::AlignedBox2d bounds;
   for (const SurfaceFace& face : faces) {
-    for (const Vec3& corner : face.corner_body_m) bounds.include(plane_coordinates(grid, corner));
+    for (const Vec3& corner : face.corner_body_m) bounds.extend(plane_coordinates(grid, corner));
   }
-  if (((bounds.high - bounds.low).array() <= 0.0).any()) {
+  if ((bounds.sizes().array() <= 0.0).any()) {
     throw error(options, "a surface that is edge-on to the grid", "a surface seen from its front");
   }
-  grid.u_low = bounds.low.x();
-  grid.v_low = bounds.low.y();
-  grid.u_high = bounds.high.x();
-  grid.v_high = bounds.high.y();
+  grid.u_low = bounds.min().x();
+  grid.v_low = bounds.min().y();
+  grid.u_high = bounds.max().x();
+  grid.v_high = bounds.max().y();
 }
 
 void check_texture(const Scene& scene, std::span<const SurfaceFace> faces,
@@ -216,43 +208,29 @@ std::array<Vec2, 3> texture_corners(const Scene& scene, const SurfaceFace& face)
 
 namespace {
 
-// A corner of a clipped piece: its position on the grid and in the triangle.
-struct Corner {
-  Vec2 cell = Vec2::Zero();
-  Vec2 barycentric = Vec2::Zero();
-};
+// A corner of a clipped piece: its position on the grid (x, y) and in the triangle (z, w).
+using Corner = Eigen::Vector4d;
 
 // A triangle cut by four lines has at most seven corners; the others allow for rounding.
 struct Piece {
   std::array<Corner, 12> corner;
   size_t count = 0;
 
+  std::span<const Corner> corners() const { return std::span(corner).first(count); }
   void add(const Corner& c) { corner[count++] = c; }
 };
 
-struct Halves {
-  Piece below;
-  Piece above;
-};
-
-Halves cut(const Piece& piece, int axis, double at) {
-  Halves halves;
-  for (size_t i = 0; i < piece.count; ++i) {
-    const Corner& a = piece.corner[i];
-    const Corner& b = piece.corner[i + 1 == piece.count ? 0 : i + 1];
-    const double from = a.cell[axis] - at, to = b.cell[axis] - at;
-    if (from <= 0) halves.below.add(a);
-    if (from >= 0) halves.above.add(a);
-    if ((from < 0 && to > 0) || (from > 0 && to < 0)) {
-      const double t = from / (from - to);
-      Corner crossing{a.cell + t * (b.cell - a.cell),
-                      a.barycentric + t * (b.barycentric - a.barycentric)};
-      crossing.cell[axis] = at;
-      halves.below.add(crossing);
-      halves.above.add(crossing);
-    }
-  }
-  return halves;
+// Parts below and above `at` along an axis.
+std::array<Piece, 2> cut(const Piece& piece, int axis, double at) {
+  std::array<Piece, 2> parts;
+  divide_convex(
+      piece.corners(), [&](const Corner& corner) { return corner[axis] - at; },
+      [&](Corner corner, double side) {
+        if (side == 0.0) corner[axis] = at;
+        if (side <= 0.0) parts[0].add(corner);
+        if (side >= 0.0) parts[1].add(corner);
+      });
+  return parts;
 }
 
 // Area of a piece as a fraction of its triangle, whose barycentric coordinates enclose an area of
@@ -270,11 +248,8 @@ double area_fraction(std::span<const Vec2> piece) {
 // Calls take(index, part) for the parts of a piece between consecutive integers along an axis.
 template <typename Take>
 void slice(Piece rest, int axis, int size, const Take& take) {
-  double low = rest.corner[0].cell[axis], high = low;
-  for (size_t i = 1; i < rest.count; ++i) {
-    low = std::min(low, rest.corner[i].cell[axis]);
-    high = std::max(high, rest.corner[i].cell[axis]);
-  }
+  const auto [low, high] = std::ranges::minmax(
+      rest.corners() | std::views::transform([axis](const Corner& c) { return c[axis]; }));
   const auto index = [size](double x) {
     return static_cast<int>(std::clamp(std::floor(x), 0.0, size - 1.0));
   };
@@ -283,9 +258,9 @@ void slice(Piece rest, int axis, int size, const Take& take) {
   const int first = index(low);
   const int last = high - low < 1e-9 ? first : index(high);
   for (int i = first; i < last; ++i) {
-    Halves halves = cut(rest, axis, i + 1.0);
-    if (halves.below.count >= 3) take(i, halves.below);
-    rest = halves.above;
+    const auto [below, above] = cut(rest, axis, i + 1.0);
+    if (below.count >= 3) take(i, below);
+    rest = above;
   }
   if (rest.count >= 3) take(last, rest);
 }
@@ -295,13 +270,13 @@ void slice(Piece rest, int axis, int size, const Take& take) {
 void clip_to_cells(const std::array<Vec2, 3>& corners, int width, int height,
                    const std::function<void(int, int, std::span<const Vec2>)>& add) {
   Piece triangle;
-  triangle.add({corners[0], {0, 0}});
-  triangle.add({corners[1], {1, 0}});
-  triangle.add({corners[2], {0, 1}});
+  triangle.add({corners[0].x(), corners[0].y(), 0.0, 0.0});
+  triangle.add({corners[1].x(), corners[1].y(), 1.0, 0.0});
+  triangle.add({corners[2].x(), corners[2].y(), 0.0, 1.0});
   slice(triangle, 0, width, [&](int column, const Piece& strip) {
     slice(strip, 1, height, [&](int row, const Piece& part) {
       std::array<Vec2, 12> weights;
-      for (size_t i = 0; i < part.count; ++i) weights[i] = part.corner[i].barycentric;
+      for (size_t i = 0; i < part.count; ++i) weights[i] = part.corner[i].tail<2>();
       add(column, row, std::span(weights).first(part.count));
     });
   });

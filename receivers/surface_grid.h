@@ -113,9 +113,8 @@ std::array<Vec2, 3> texture_corners(const Scene& scene, const SurfaceFace& face)
 // are ≥ 0 and sum to 1 within a few roundings, also for a triangle that is edge-on to the grid.
 // `corners` are in units of cells; parts outside count for the nearest cell.
 //
-// Method: I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Comm. ACM 17 (1974),
-// first into columns and then into rows. The polygons carry barycentric coordinates, from which
-// areas are computed.
+// Method: divide_convex(), first into columns and then into rows. The polygons carry barycentric
+// coordinates, from which areas are computed.
 void split_over_cells(const std::array<Vec2, 3>& corners, int width, int height,
                       const std::function<void(int, int, double)>& add);
 

@@ -1,7 +1,5 @@
 #include "receivers/torque_map.h"
 
-#include <limits>
-
 #include "core/constants.h"
 #include "receivers/kind.h"
 #include "receivers/surface_grid.h"
@@ -36,11 +34,11 @@ size_t TorqueMapReceiver::bins() const {
 
 void TorqueMapReceiver::score(const Hits& hits, std::span<double> sums) const {
   const bool as_published = force_ == Force::as_published;
-  if (as_published && hits.depth[0] > 0) return;
+  if (as_published && hits.depth > 0) return;
   BinnedHits binned;
   binner_.bin(hits, binned);
   const Vec3 about_m = about_body_m_;
-  const size_t offset = hits.depth[0] == 0 ? 0 : direct_entries();
+  const size_t offset = hits.depth == 0 ? 0 : direct_entries();
   for_each_binned(binned, [&](size_t hit, size_t index) {
     const Vec3 f = as_published ? force_as_published_N(hits, hit) : hits.force_at_N(hit);
     Eigen::Map<Vec3>(sums.data() + offset + index * axes) +=
@@ -50,25 +48,12 @@ void TorqueMapReceiver::score(const Hits& hits, std::span<double> sums) const {
 
 TorqueMap TorqueMapReceiver::torque_map(const BinSums& sums) const {
   TorqueMap map{grid_, about_body_m_, {}, {}};
-  std::vector<double> values(static_cast<size_t>(sums.replicates));
   for (size_t axis = 0; axis < axes; ++axis) {
-    std::vector<double> totals(values.size(), 0.0);
-    double bounds = 0.0;
-    for (size_t bin = 0; bin < grid_.bins(); ++bin) {
-      constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-      const size_t direct = bin * axes + axis, bounced = direct_entries() + direct;
-      for (size_t r = 0; r < values.size(); ++r) {
-        const auto all = sums.of(static_cast<int>(r));
-        values[r] = all[direct] + all[bounced];
-        totals[r] += values[r];
-      }
-      bounds += sums.bound_of(direct);
-      map.per_bin_N_m[axis].push_back(
-          grid_.area_m2[bin] > 0.0
-              ? with_bound(estimate_from_replicates(values), sums.bound_of(direct))
-              : Estimate{nan, nan});
-    }
-    map.total_N_m[axis] = with_bound(estimate_from_replicates(totals), bounds);
+    GridEstimates of_axis = estimates_on(
+        grid_, sums,
+        [axis](std::span<const double> half, size_t bin) { return half[bin * axes + axis]; });
+    map.per_bin_N_m[axis] = std::move(of_axis.per_bin);
+    map.total_N_m[axis] = of_axis.total;
   }
   return map;
 }

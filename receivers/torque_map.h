@@ -38,7 +38,6 @@ class TorqueMapReceiver final : public Receiver {
                     const Vec3& about_body_m = Vec3::Zero(), Force force = Force::momentum);
 
   size_t bins() const override;
-  // All hits of one call must have the same depth.
   void score(const Hits& hits, std::span<double> sums) const override;
   // Number of bins of direct light; they are the first half of bins().
   size_t direct_entries() const { return bins() / 2; }

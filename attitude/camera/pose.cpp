@@ -165,9 +165,7 @@ std::optional<Mat3> principal_point_error_lab_rad2(const TrackingCamera& camera,
 PlaneErrors plane_errors(const TrackingCamera& camera, const Mat3& covariance_lab_rad2) {
   const Mat3 axes = camera.lab_from_camera.rotation.toRotationMatrix();
   const Mat3 seen = axes.transpose() * covariance_lab_rad2 * axes;
-  return {std::sqrt(seen(2, 2)),
-          std::sqrt(0.5 * (seen(0, 0) + seen(1, 1))),
-          {std::sqrt(seen(0, 0)), std::sqrt(seen(1, 1))}};
+  return {std::sqrt(seen(2, 2)), std::sqrt(0.5 * (seen(0, 0) + seen(1, 1)))};
 }
 
 std::optional<Vec3> marker_bias_lab_rad(const TrackingCamera& camera, const Pose& pose) {

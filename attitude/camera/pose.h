@@ -41,12 +41,11 @@ std::optional<Mat3> calibration_error_lab_rad2(const TrackingCamera& camera, con
 std::optional<Mat3> principal_point_error_lab_rad2(const TrackingCamera& camera, const Pose& pose,
                                                    double error_px);
 
-// Errors [rad] about the optical axis (in plane) and about the two axes perpendicular to it: for
-// each of them, and their root mean square (out of plane).
+// Errors [rad] about the optical axis (in plane), and the root mean square about the two axes
+// perpendicular to it (out of plane).
 struct PlaneErrors {
   double in_plane_rad = 0.0;
   double out_of_plane_rad = 0.0;
-  Vec2 across_rad = Vec2::Zero();
 };
 PlaneErrors plane_errors(const TrackingCamera& camera, const Mat3& covariance_lab_rad2);
 

@@ -11,6 +11,7 @@ namespace photorque {
 namespace {
 
 namespace tracking_key {
+constexpr CameraParts usual;
 constexpr Vec3sKey markers(
     "markers_m",
     "positions of the markers, body axes; at least two, four for a free pose. The noise then "
@@ -25,19 +26,17 @@ constexpr Vec3sKey marker_error("marker_error_m",
 constexpr NumberKey intensity("intensity_W_sr", Range::positive(),
                               "radiant intensity of a marker along its normal", {.optional = true});
 constexpr NumberKey half_angle(
-    "half_angle_deg", {0.0, 0.5 * pi, true, true},
-    "angle of half the intensity, which is a power of the cosine; 60 is Lambert's law",
-    {.optional = true});
-constexpr NumberKey wavelength("wavelength_nm", {1e-7, 2e-6},
-                               "wavelength of the light of the markers", {.optional = true});
+    "half_angle_deg", usual.half_angle_rad, {0.0, 0.5 * pi, true, true},
+    "angle of half the intensity, which is a power of the cosine; 60 is Lambert's law");
+constexpr NumberKey wavelength("wavelength_nm", usual.wavelength_m, {1e-7, 2e-6},
+                               "wavelength of the light of the markers");
 constexpr NumberKey focal_length("focal_length_mm", Range::positive(), "focal length of the lens",
                                  {.optional = true});
-constexpr NumberKey f_number("f_number", {0.5, 128.0}, "f-number of the lens", {.optional = true});
-constexpr NumberKey transmittance("transmittance", {0.0, 1.0, true, false},
-                                  "transmittance of lens and filter", {.optional = true});
-constexpr NumberKey spot("spot_px", {0.3, 50.0},
-                         "standard deviation of a spot without diffraction and motion",
-                         {.optional = true});
+constexpr NumberKey f_number("f_number", usual.f_number, {0.5, 128.0}, "f-number of the lens");
+constexpr NumberKey transmittance("transmittance", usual.transmittance, {0.0, 1.0, true, false},
+                                  "transmittance of lens and filter");
+constexpr NumberKey spot("spot_px", usual.spot_px, {0.3, 50.0},
+                         "standard deviation of a spot without diffraction and motion");
 constexpr NumbersKey distortion("distortion", {-10.0, 10.0},
                                 "calibrated distortion of the lens: [k1, k2, p1, p2], radial and "
                                 "tangential, as OpenCV defines them",
@@ -54,18 +53,17 @@ constexpr NumbersKey resolution("resolution", {8.0, 65536.0},
 constexpr NumberKey exposure("exposure_s", Range::positive(),
                              "exposure time; no pixel may exceed the full well at zero tilt",
                              {.optional = true});
-constexpr NumberKey line_time("line_time_s", Range::not_negative(),
-                              "rolling shutter: delay of each row after the one above",
-                              {.optional = true});
-constexpr NumberKey quantum_efficiency("quantum_efficiency", {0.0, 1.0, true, false},
-                                       "quantum efficiency of the sensor", {.optional = true});
-constexpr NumberKey read_noise_electrons("read_noise_electrons", Range::positive(),
-                                         "read noise of a pixel", {.optional = true});
-constexpr NumberKey background_electrons("background_electrons", Range::not_negative(),
-                                         "background electrons of a pixel in one exposure",
-                                         {.optional = true});
-constexpr NumberKey full_well_electrons("full_well_electrons", Range::positive(),
-                                        "full-well capacity of a pixel", {.optional = true});
+constexpr NumberKey line_time("line_time_s", usual.line_time_s, Range::not_negative(),
+                              "rolling shutter: delay of each row after the one above");
+constexpr NumberKey quantum_efficiency("quantum_efficiency", usual.quantum_efficiency,
+                                       {0.0, 1.0, true, false}, "quantum efficiency of the sensor");
+constexpr NumberKey read_noise_electrons("read_noise_electrons", usual.read_noise_electrons,
+                                         Range::positive(), "read noise of a pixel");
+constexpr NumberKey background_electrons("background_electrons", usual.background_electrons,
+                                         Range::not_negative(),
+                                         "background electrons of a pixel in one exposure");
+constexpr NumberKey full_well_electrons("full_well_electrons", usual.full_well_electrons,
+                                        Range::positive(), "full-well capacity of a pixel");
 constexpr Vec3Key position("position_m", "position of the camera, lab axes", {.optional = true});
 constexpr Vec3Key aim("aim_m", {0.0, 0.0, 0.0}, "point on the optical axis, lab axes");
 constexpr ChoiceKey pose("pose",
@@ -103,8 +101,8 @@ void read_markers(const Settings& s, TrackingCamera& camera) {
                   "one for each of the " + std::to_string(camera.markers.size()) + " markers");
   }
   camera.radiant_intensity_W_sr = s.get(tracking_key::intensity);
-  camera.half_angle_rad = s.get_or(tracking_key::half_angle, camera.half_angle_rad);
-  camera.wavelength_m = s.get_or(tracking_key::wavelength, camera.wavelength_m);
+  camera.half_angle_rad = s.get(tracking_key::half_angle);
+  camera.wavelength_m = s.get(tracking_key::wavelength);
 }
 
 void read_sensor(const Settings& s, TrackingCamera& camera) {
@@ -117,14 +115,11 @@ void read_sensor(const Settings& s, TrackingCamera& camera) {
   camera.width = static_cast<int>(size[0]);
   camera.height = static_cast<int>(size[1]);
   camera.exposure_s = s.get(tracking_key::exposure);
-  camera.line_time_s = s.get_or(tracking_key::line_time, 0.0);
-  camera.quantum_efficiency = s.get_or(tracking_key::quantum_efficiency, camera.quantum_efficiency);
-  camera.read_noise_electrons =
-      s.get_or(tracking_key::read_noise_electrons, camera.read_noise_electrons);
-  camera.background_electrons =
-      s.get_or(tracking_key::background_electrons, camera.background_electrons);
-  camera.full_well_electrons =
-      s.get_or(tracking_key::full_well_electrons, camera.full_well_electrons);
+  camera.line_time_s = s.get(tracking_key::line_time);
+  camera.quantum_efficiency = s.get(tracking_key::quantum_efficiency);
+  camera.read_noise_electrons = s.get(tracking_key::read_noise_electrons);
+  camera.background_electrons = s.get(tracking_key::background_electrons);
+  camera.full_well_electrons = s.get(tracking_key::full_well_electrons);
 }
 
 void read_place(const Settings& s, TrackingCamera& camera) {
@@ -210,27 +205,26 @@ Eigen::Matrix2d Distortion::slope(const Vec2& u) const {
 
 std::vector<Key> tracking_camera_keys() {
   using namespace tracking_key;
-  const TrackingCamera usual;
   return {markers,
           marker_normal,
           marker_error,
           intensity,
-          half_angle.with_default(usual.half_angle_rad),
-          wavelength.with_default(usual.wavelength_m),
+          half_angle,
+          wavelength,
           focal_length,
-          f_number.with_default(usual.f_number),
-          transmittance.with_default(usual.transmittance),
-          spot.with_default(usual.spot_px),
+          f_number,
+          transmittance,
+          spot,
           distortion,
           distortion_error,
           pixel,
           resolution,
           exposure,
-          line_time.with_default(usual.line_time_s),
-          quantum_efficiency.with_default(usual.quantum_efficiency),
-          read_noise_electrons.with_default(usual.read_noise_electrons),
-          background_electrons.with_default(usual.background_electrons),
-          full_well_electrons.with_default(usual.full_well_electrons),
+          line_time,
+          quantum_efficiency,
+          read_noise_electrons,
+          background_electrons,
+          full_well_electrons,
           position,
           aim,
           pose,
@@ -242,9 +236,9 @@ std::optional<TrackingCamera> read_tracking_camera(const Settings& settings) {
   TrackingCamera camera;
   read_markers(settings, camera);
   camera.focal_length_m = settings.get(tracking_key::focal_length);
-  camera.f_number = settings.get_or(tracking_key::f_number, camera.f_number);
-  camera.transmittance = settings.get_or(tracking_key::transmittance, camera.transmittance);
-  camera.spot_px = settings.get_or(tracking_key::spot, camera.spot_px);
+  camera.f_number = settings.get(tracking_key::f_number);
+  camera.transmittance = settings.get(tracking_key::transmittance);
+  camera.spot_px = settings.get(tracking_key::spot);
   read_sensor(settings, camera);
   camera.distortion = read_distortion(settings, tracking_key::distortion);
   camera.distortion_error = read_distortion(settings, tracking_key::distortion_error);

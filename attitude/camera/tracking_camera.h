@@ -43,10 +43,8 @@ struct Distortion {
 // Reads [k1, k2, p1, p2]; zero if the key is absent.
 Distortion read_distortion(const Settings& settings, const NumbersKey& key);
 
-struct TrackingCamera {
-  std::vector<Marker> markers;
-  // True positions of the markers minus the assumed positions; one for each marker, or empty.
-  std::vector<Vec3> marker_error_body_m;
+// Markers, lens and sensor.
+struct CameraParts {
   double radiant_intensity_W_sr = 1e-4;  // of a marker along its normal
   double half_angle_rad = 1.0471975512;  // at half of this intensity; 60 deg: Lambert's law
   double wavelength_m = 630e-9;
@@ -55,8 +53,6 @@ struct TrackingCamera {
   double f_number = 4.0;        // focal length over aperture diameter
   double transmittance = 0.85;  // of lens and filter
   double spot_px = 0.6;         // standard deviation of the spot without diffraction and motion
-  Distortion distortion;        // calibrated; used by the pose
-  Distortion distortion_error;  // true distortion minus `distortion`
 
   double pixel_m = 4.8e-6;
   int width = 1280, height = 1024;
@@ -66,6 +62,14 @@ struct TrackingCamera {
   double read_noise_electrons = 10.0;  // per pixel, one standard deviation
   double background_electrons = 0.0;   // per pixel and exposure; the mean is known
   double full_well_electrons = 10000.0;
+};
+
+struct TrackingCamera : CameraParts {
+  std::vector<Marker> markers;
+  // True positions of the markers minus the assumed positions; one for each marker, or empty.
+  std::vector<Vec3> marker_error_body_m;
+  Distortion distortion;        // calibrated; used by the pose
+  Distortion distortion_error;  // true distortion minus `distortion`
 
   RigidTransform lab_from_camera;
   // true: the platform rotates about the centre of the bearing, whose position is known. false:

@@ -45,10 +45,24 @@ struct DisturbanceKind {
   std::vector<Key> keys = {};
 };
 
-// DisturbanceKind::read for a law that needs only its keys.
-template <class LawType, Stage stage, const auto&... keys>
-Disturbance read_law([[maybe_unused]] const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<LawType>({parameters_of(settings, keys)...}, stage);
+// A kind whose law needs only these keys, with `read` and `keys` added.
+template <class LawType, Stage stage, const auto&... law_keys>
+DisturbanceKind kind_of_law(DisturbanceKind kind) {
+  kind.read = []([[maybe_unused]] const Settings& settings, const DisturbanceContext&) {
+    return make_disturbance<LawType>({parameters_of(settings, law_keys)...}, stage);
+  };
+  kind.keys = {Key(law_keys)...};
+  return kind;
+}
+
+// DisturbanceKind::read for a key that takes one number, or one for each body axis, with a law for
+// each case.
+template <class LawOfOne, class LawOfThree, const ScalarKey& key>
+Disturbance read_one_or_three(const Settings& settings, const DisturbanceContext&) {
+  if (count_as_written(settings, key.name) == 0) {
+    return make_disturbance<LawOfOne>({parameters_of(settings, key)});
+  }
+  return make_disturbance<LawOfThree>({parameters_of(settings, VectorKey(key.name))});
 }
 
 // All kinds, generated from CMakeLists.txt.

@@ -39,9 +39,7 @@ struct Environment {
   double air_viscosity_Pa_s = 1.813e-5;
 };
 
-// Reads [environment]. All keys have defaults: standard gravity, no magnetic field, dry air at
-// 20 °C and 1013.25 hPa, latitude 0. The field is magnetic_field_T[3] in lab axes, or igrf = {date
-// (2025-06-30, or a decimal year), latitude_deg, longitude_deg, height_m (0)}.
+// Reads [environment], whose keys, all with defaults, are environment_table().
 Environment read_environment(const Settings& settings);
 Key environment_table();
 

@@ -124,13 +124,26 @@ HeliocentricOrbit read_orbit(const Settings& settings, const Epoch& date) {
   return orbit;
 }
 
-Pointing read_pointing(const Settings& settings) {
-  Pointing pointing;
-  pointing.axis = static_cast<int>(settings.get(sun_key::axis));
-  pointing.right_ascension_rad = settings.get(sun_key::right_ascension);
-  pointing.declination_rad = settings.get(sun_key::declination);
-  pointing.roll_rad = settings.get(sun_key::roll);
-  return pointing;
+// Orientation of a lab from one axis and a roll angle. The axis points to right ascension and
+// declination (equator and equinox of J2000). At a roll of zero, the next axis is as close to the
+// celestial north pole as possible. The roll rotates it about the first.
+Mat3 read_lab_from_equatorial(const Settings& pointing) {
+  const auto axis = static_cast<Eigen::Index>(pointing.get(sun_key::axis));
+  const double right_ascension_rad = pointing.get(sun_key::right_ascension),
+               declination_rad = pointing.get(sun_key::declination),
+               roll_rad = pointing.get(sun_key::roll);
+  const double c = std::cos(declination_rad);
+  const Vec3 towards(c * std::cos(right_ascension_rad), c * std::sin(right_ascension_rad),
+                     std::sin(declination_rad));
+  // At the pole, north is opposite to the direction of the right ascension.
+  const Vec3 north(-std::sin(declination_rad) * std::cos(right_ascension_rad),
+                   -std::sin(declination_rad) * std::sin(right_ascension_rad), c);
+  const Vec3 next = std::cos(roll_rad) * north + std::sin(roll_rad) * towards.cross(north);
+  Mat3 lab_from;
+  lab_from.row(axis) = towards;
+  lab_from.row((axis + 1) % 3) = next;
+  lab_from.row((axis + 2) % 3) = towards.cross(next);
+  return lab_from;
 }
 
 }  // namespace
@@ -231,21 +244,6 @@ std::array<Vec3, 2> SunPath::of_table(double time_s) const {
   return {fixed_au_.norm() * unit, fixed_au_.norm() / length * (slope - unit * unit.dot(slope))};
 }
 
-Mat3 Pointing::lab_from_equatorial() const {
-  const double c = std::cos(declination_rad);
-  const Vec3 towards(c * std::cos(right_ascension_rad), c * std::sin(right_ascension_rad),
-                     std::sin(declination_rad));
-  // At the pole, north is opposite to the direction of the right ascension.
-  const Vec3 north(-std::sin(declination_rad) * std::cos(right_ascension_rad),
-                   -std::sin(declination_rad) * std::sin(right_ascension_rad), c);
-  const Vec3 next = std::cos(roll_rad) * north + std::sin(roll_rad) * towards.cross(north);
-  Mat3 lab_from;
-  lab_from.row(axis) = towards;
-  lab_from.row((axis + 1) % 3) = next;
-  lab_from.row((axis + 2) % 3) = towards.cross(next);
-  return lab_from;
-}
-
 SunPath read_sun(const Settings& settings) {
   const int ways = (settings.has(sun_key::direction) ? 1 : 0) +
                    (settings.has(sun_key::table) ? 1 : 0) + (settings.has(sun_key::date) ? 1 : 0);
@@ -262,7 +260,7 @@ SunPath read_sun(const Settings& settings) {
                                         : orbit_of_earth(date.seconds_since(J2000));
     Mat3 lab_from_equatorial = Mat3::Identity();
     if (settings.has(sun_key::pointing)) {
-      lab_from_equatorial = read_pointing(settings.get(sun_key::pointing)).lab_from_equatorial();
+      lab_from_equatorial = read_lab_from_equatorial(settings.get(sun_key::pointing));
     }
     return SunPath::orbit(orbit, lab_from_equatorial * equatorial_from_ecliptic());
   }
@@ -270,9 +268,7 @@ SunPath read_sun(const Settings& settings) {
   if (settings.has(sun_key::table)) {
     const std::filesystem::path path = existing_file(
         settings, sun_key::table, std::filesystem::path(settings.where().file).parent_path());
-    return SunPath::table(
-        read_time_series(path, {"sun_x", "sun_y", "sun_z"}, TimeSeries::Outside::hold),
-        distance_au);
+    return SunPath::table(read_time_series(path, {"sun_x", "sun_y", "sun_z"}), distance_au);
   }
   return SunPath::fixed(distance_au * direction_of(settings, sun_key::direction).normalized());
 }

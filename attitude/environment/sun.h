@@ -57,26 +57,8 @@ class SunPath {
   Eigen::Matrix<double, 3, 2> lab_from_plane_ = {};
 };
 
-// Orientation of a lab from one axis and a roll angle. `axis` (0, 1, 2) points to right ascension
-// and declination (equator and equinox of J2000). At a roll of zero, the next axis is as close to
-// the celestial north pole as possible. The roll rotates it about the first.
-struct Pointing {
-  int axis = 2;
-  double right_ascension_rad = 0.0, declination_rad = 0.5 * pi;
-  double roll_rad = 0.0;
-
-  Mat3 lab_from_equatorial() const;
-};
-
-// Reads [environment.sun], one of three forms:
-//   direction[3]: fixed, lab axes, any length.
-//   table: CSV with t_s, sun_x, sun_y, sun_z, lab axes, any length; its path is relative to the
-//     experiment. For both, the distance is distance_au (default 1).
-//   date: calendar time of t = 0. orbit = { semi_major_axis_au, eccentricity, inclination_deg,
-//     ascending_node_deg, perihelion_deg, mean_anomaly_deg, epoch (date) }; default: the Earth's.
-//     pointing = { axis ("z"), right_ascension_deg, declination_deg, roll_deg (0) }; default: lab
-//     axes are equatorial.
-// InputError unless exactly one form is given.
+// Reads [environment.sun], whose keys are sun_table(). InputError unless exactly one of
+// `direction`, `table` and `date` is given.
 SunPath read_sun(const Settings& settings);
 Key sun_table();
 

@@ -50,6 +50,7 @@ class TimeSeries {
 // among others. InputError with the line of a cell that is missing, not a number or not in order of
 // time.
 TimeSeries read_time_series(const std::filesystem::path& path,
-                            const std::array<std::string, 3>& columns, TimeSeries::Outside outside);
+                            const std::array<std::string, 3>& columns,
+                            TimeSeries::Outside outside = TimeSeries::Outside::hold);
 
 }  // namespace photorque

@@ -1,4 +1,5 @@
-// Readings of the angle or rate of a body about its only axis of rotation.
+// Readings of the angle or rate of a body about its only axis of rotation, and rates that are
+// computed from angles.
 #pragma once
 
 #include <optional>
@@ -49,5 +50,19 @@ struct ReadingAtRest {
   double rate_rad_s = 0.0, sigma_rad_s = 0.0;
 };
 std::optional<ReadingAtRest> reading_at_rest(const Observation& rows, const Vec3& axis);
+
+// Whether all rates about the axis are difference quotients of the angle: towards the previous
+// reading, the next one, or across both. They must agree to 5 % of the scatter of neighbouring
+// quotients. The errors of a second instrument would be independent.
+bool is_rate_of_angle(const Observation& rows, const Vec3& axis);
+// Removes the rates from the rows.
+void drop_rates(Observation& rows);
+
+// The recording with mean rates between the readings instead of the angle, if the angle has fewer
+// than nine readings per turn and turns at least ten times in one sense. Such an angle does not
+// show the law within a turn. Empty for other recordings, with commands or with other readings of
+// the rotation.
+std::optional<Recording> with_rates_of_far_turns(const Recording& recording,
+                                                 const Platform& platform);
 
 }  // namespace photorque

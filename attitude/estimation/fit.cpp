@@ -6,7 +6,6 @@
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/estimation/forward_model.h"
-#include "attitude/estimation/starts.h"
 #include "attitude/model/disturbance.h"
 #include "attitude/observation/blocks.h"
 #include "attitude/propagation/run.h"
@@ -51,6 +50,9 @@ std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observati
   return all;
 }
 
+namespace {
+
+// Whitened residuals of each channel (recordings/columns.h) without gaps, one entry per run.
 std::vector<inference::ChannelResiduals> channels_of(const std::vector<Prediction>& residuals) {
   std::vector<inference::ChannelResiduals> runs;
   for (const Prediction& p : residuals) {
@@ -65,6 +67,8 @@ std::vector<inference::ChannelResiduals> channels_of(const std::vector<Predictio
   }
   return runs;
 }
+
+}  // namespace
 
 double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
                     const Thresholds& thresholds) {
@@ -89,16 +93,6 @@ double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
   }
 }
 
-void drop_reading(int channel, size_t block, Observation& seen) {
-  if (channel >= vector_channels) {
-    seen.scalar[static_cast<size_t>(channel - vector_channels)].rows[block] = 0.0;
-  } else if (channel >= 3) {
-    seen.gyro_rows[block][channel - 3] = 0.0;
-  } else {
-    seen.attitude_rows[block] = 0.0;
-  }
-}
-
 int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,
                       std::vector<Observation>& runs) {
   int64_t dropped = 0;
@@ -113,7 +107,7 @@ int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds
       for (const size_t n : inference::outliers(all[run][static_cast<size_t>(k)], limits)) {
         // An attitude may have been dropped for another component.
         if (k >= 3 || runs[run].attitude_rows[rows[n]] > 0.0) ++dropped;
-        drop_reading(static_cast<int>(k), rows[n], runs[run]);
+        runs[run].rows_in(rows[n], static_cast<int>(k)) = 0.0;
       }
     }
   }
@@ -126,32 +120,17 @@ namespace {
 struct Neighbours {
   size_t first = 0, last = 0;
   double time_sum_s = 0.0;
-  Vec3 attitude_sum = Vec3::Zero(), gyro_sum = Vec3::Zero();
-  double attitude_rows = 0.0;
-  Vec3 gyro_rows = Vec3::Zero();
-  std::array<double, scalar_count> scalar_sum = {}, scalar_rows = {};
+  WhiteRow sum = WhiteRow::Zero(), rows = WhiteRow::Zero();
 
   void add(const Observation& from, const Prediction& propagated, size_t i) {
     if (last == first) first = i;
     last = i + 1;
     time_sum_s += from.time_s[i];
-    const WhiteRow& off = propagated.off[i];
-    const double rows = from.attitude_rows[i];
-    if (rows > 0.0) {
-      attitude_sum += rows * off.head<3>();
-      attitude_rows += rows;
-    }
-    for (int k = 0; k < 3; ++k) {
-      const double read = from.gyro_rows[i][k];
+    for (int channel = 0; channel < channel_count; ++channel) {
+      const double read = channel < 3 ? from.attitude_rows[i] : from.rows_of(i, channel);
       if (!(read > 0.0)) continue;
-      gyro_sum[k] += read * off[3 + k];
-      gyro_rows[k] += read;
-    }
-    for (int s = 0; s < scalar_count; ++s) {
-      const double read = from.rows_of(i, vector_channels + s);
-      if (!(read > 0.0)) continue;
-      scalar_sum[static_cast<size_t>(s)] += read * off[vector_channels + s];
-      scalar_rows[static_cast<size_t>(s)] += read;
+      sum[channel] += read * propagated.off[i][channel];
+      rows[channel] += read;
     }
   }
 
@@ -166,30 +145,25 @@ struct Neighbours {
 
   void append_to(Observation& to, const Observation& from, const Prediction& propagated) const {
     const size_t m = middle(from);
-    to.time_s.push_back(from.time_s[m]);
+    const size_t block = append_block(from, from.time_s[m], to);
     // Residuals have no curvature, so the spread is that of the middle row.
     if (!from.spread.empty()) {
       to.spread.push_back(from.spread[m]);
       to.spread.back().gyro_moved_rad_s.setZero();
     }
-    Quat attitude(NAN, NAN, NAN, NAN);
-    if (attitude_rows > 0.0) {
-      const Vec3 turn = propagated.camera_offset_lab_rad[m] + attitude_sum / attitude_rows;
-      attitude = (turn_by(turn) * propagated.states[m].lab_from_body).normalized();
+    const WhiteRow mean = sum.cwiseQuotient(rows);  // NaN without readings
+    if (rows[0] > 0.0) {
+      const Vec3 turn = propagated.camera_offset_lab_rad[m] + mean.head<3>();
+      to.attitude[block] = (turn_by(turn) * propagated.states[m].lab_from_body).normalized();
     }
-    to.attitude.push_back(attitude);
-    to.attitude_rows.push_back(attitude_rows);
-    Vec3 rate = Vec3::Constant(NAN);
-    for (int k = 0; k < 3; ++k) {
-      if (gyro_rows[k] > 0.0) rate[k] = propagated.gyro_rad_s[m][k] + gyro_sum[k] / gyro_rows[k];
-    }
-    to.gyro_rad_s.push_back(rate);
-    to.gyro_rows.push_back(gyro_rows);
-    for (size_t s = 0; s < from.scalar.size(); ++s) {
-      if (from.scalar[s].rows.empty()) continue;
-      const double mean = scalar_rows[s] > 0.0 ? scalar_sum[s] / scalar_rows[s] : NAN;
-      to.scalar[s].value.push_back(propagated.scalars[m][static_cast<Eigen::Index>(s)] + mean);
-      to.scalar[s].rows.push_back(scalar_rows[s]);
+    to.attitude_rows[block] = rows[0];
+    for (int channel = 3; channel < channel_count; ++channel) {
+      if (!from.has_channel(channel)) continue;
+      const double predicted = channel < vector_channels
+                                   ? propagated.gyro_rad_s[m][channel - 3]
+                                   : propagated.scalars[m][channel - vector_channels];
+      to.value_of(block, channel) = predicted + mean[channel];
+      to.rows_in(block, channel) = rows[channel];
     }
   }
 };

@@ -42,16 +42,10 @@ inference::SumsOfRuns sums_at(const Hypothesis& at, const std::vector<Observatio
 Prediction residuals_of(const Fit& fit, size_t run, const Observation& seen);
 std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs);
 
-// Whitened residuals of each channel (recordings/columns.h) without gaps, one entry per run.
-std::vector<inference::ChannelResiduals> channels_of(const std::vector<Prediction>& residuals);
-
 // Significance of the residual structure of a fit, in standard deviations: of means of neighbouring
 // residuals, and of the χ² per reading above `limits.held_out.max_noise`.
 // `limits.noise.excess_unknown` if the fit cannot be propagated.
 double excess_sigma(const Fit& fit, const std::vector<Observation>& runs, const Thresholds& limits);
-
-// Drops the reading of a channel in a block; those of an attitude are dropped together.
-void drop_reading(int channel, size_t block, Observation& seen);
 
 // Drops outliers, which are readings far from the prediction by the residuals of their neighbours.
 // Returns their number.
@@ -73,6 +67,13 @@ Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Obs
 
 // Appends a disturbance, whose extra states start at rest in every run. Returns its index.
 size_t add_disturbance(Hypothesis& hypothesis, const Disturbance& disturbance);
+
+// Chooses the starts of runs that have scalar readings (recordings/columns.h) but no attitude
+// readings. A tilt does not determine its direction, nor the magnitude of a rate its axis, and fits
+// from a wrong start end in other local minima. Many tilt directions and rotation axes are tried.
+// The one whose fit of the first blocks has the smallest χ² becomes the start. Other runs keep
+// their start.
+void choose_starts(Hypothesis& hypothesis, const std::vector<Observation>& runs);
 
 // Fits the nominal model to the runs, over growing windows.
 Fit fit_nominal(const NominalModel& nominal, const std::vector<Observation>& runs,

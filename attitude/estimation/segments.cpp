@@ -7,8 +7,8 @@
 #include <tuple>
 
 #include "attitude/estimation/axis_readings.h"
-#include "attitude/estimation/rates_of_angles.h"
 #include "attitude/estimation/swing.h"
+#include "attitude/recordings/cleaning.h"
 #include "attitude/recordings/columns.h"
 #include "core/errors.h"
 #include "core/numerics/median.h"
@@ -135,6 +135,154 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   return kinks;
 }
 
+// Rates, each replaced by the median of five neighbours: a lost count of an encoder halves one or
+// two readings.
+AxisReadings smoothed_rates(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
+  AxisReadings read = rates_about(rows, axis, first, last);
+  const std::vector<double> raw = read.value;
+  for (size_t i = 2; i + 2 < raw.size(); ++i) {
+    std::array<double, 5> near = {raw[i - 2], raw[i - 1], raw[i], raw[i + 1], raw[i + 2]};
+    std::nth_element(near.begin(), near.begin() + 2, near.end());
+    read.value[i] = near[2];
+  }
+  return read;
+}
+
+// A straight line through the rates [first, last).
+struct Line {
+  double slope_rad_s2 = 0.0, error_rad_s2 = 0.0, least_rad_s = 0.0, most_rad_s = 0.0;
+
+  bool keeps_away_from_zero() const {
+    const double far = std::max(std::abs(least_rad_s), std::abs(most_rad_s));
+    return least_rad_s * most_rad_s > 0.0 &&
+           std::min(std::abs(least_rad_s), std::abs(most_rad_s)) > 0.05 * far;
+  }
+};
+
+Line line_through(const AxisReadings& read, size_t first, size_t last) {
+  const auto count = static_cast<double>(last - first);
+  double mean_s = 0.0, mean_rad_s = 0.0;
+  Line line;
+  line.least_rad_s = line.most_rad_s = read.value[first];
+  for (size_t i = first; i < last; ++i) {
+    mean_s += read.time_s[i] / count;
+    mean_rad_s += read.value[i] / count;
+    line.least_rad_s = std::min(line.least_rad_s, read.value[i]);
+    line.most_rad_s = std::max(line.most_rad_s, read.value[i]);
+  }
+  double spread_s2 = 0.0, product = 0.0, square = 0.0;
+  for (size_t i = first; i < last; ++i) {
+    const double t = read.time_s[i] - mean_s, w = read.value[i] - mean_rad_s;
+    spread_s2 += t * t;
+    product += t * w;
+    square += w * w;
+  }
+  line.slope_rad_s2 = product / spread_s2;
+  const double rest = std::max(0.0, square - line.slope_rad_s2 * product) / (count - 2.0);
+  line.error_rad_s2 = std::sqrt(rest / spread_s2);
+  return line;
+}
+
+struct Break {
+  size_t at = 0;  // index into the readings
+  double before_rad_s2 = 0.0, after_rad_s2 = 0.0, error_rad_s2 = 0.0;
+
+  double change_rad_s2() const { return std::abs(after_rad_s2 - before_rad_s2); }
+  double larger_rad_s2() const { return std::max(std::abs(before_rad_s2), std::abs(after_rad_s2)); }
+  double standard_errors() const { return change_rad_s2() / error_rad_s2; }
+};
+
+// Slopes of `window` readings on both sides of every reading at which the rate keeps its sign and
+// is not near zero, where dry friction causes breaks. For long windows only every (window/48)-th
+// reading is used; the time would otherwise grow with the square of the length.
+std::vector<Break> changes_of(const AxisReadings& read, size_t window) {
+  std::vector<Break> changes;
+  const size_t step = std::max<size_t>(1, window / 48);
+  for (size_t i = window; i + window <= read.row.size(); i += step) {
+    const Line before = line_through(read, i - window, i),
+               after = line_through(read, i, i + window);
+    const bool goes_on = before.keeps_away_from_zero() && after.keeps_away_from_zero() &&
+                         before.most_rad_s * after.most_rad_s > 0.0;
+    if (!goes_on) continue;
+    changes.push_back({i, before.slope_rad_s2, after.slope_rad_s2,
+                       std::hypot(before.error_rad_s2, after.error_rad_s2)});
+  }
+  return changes;
+}
+
+// The changes of slope that are much larger than all others. Among neighbouring changes, only the
+// most significant is kept. An oscillating law has such changes everywhere and therefore no breaks.
+std::vector<Break> breaks_of(const AxisReadings& read, size_t window) {
+  constexpr double least_standard_errors = 10.0, least_fraction = 0.5, least_medians = 8.0;
+  const std::vector<Break> changes = changes_of(read, window);
+  if (changes.empty()) return {};
+  std::vector<double> sizes_rad_s2;
+  for (const Break& b : changes) sizes_rad_s2.push_back(b.change_rad_s2());
+  const double median_rad_s2 = upper_median(std::move(sizes_rad_s2));
+  std::vector<Break> breaks;
+  for (const Break& found : changes) {
+    if (found.change_rad_s2() < least_fraction * found.larger_rad_s2() ||
+        found.change_rad_s2() < least_medians * median_rad_s2 ||
+        !(found.standard_errors() >= least_standard_errors)) {  // 0/0 for equal readings
+      continue;
+    }
+    if (breaks.empty() || found.at - breaks.back().at > window) {
+      breaks.push_back(found);
+    } else if (found.standard_errors() > breaks.back().standard_errors()) {
+      breaks.back() = found;
+    }
+  }
+  return breaks;
+}
+
+// Rows [first, last) in which the rate about one axis follows one law.
+struct ConsistentSegment {
+  size_t first = 0, last = 0;
+  std::string left_out;  // the reason for leaving out the rest; empty: nothing is left out
+};
+
+// The longest part of the rows [first, last) without a change of the law, for example by a drive
+// that is released or a hand that brakes. A torque that depends on angle and rate cannot change the
+// slope of the rate suddenly while angle and rate are continuous. All rows are returned if commands
+// or measured wheels act, or if a weight exerts a torque once per turn.
+ConsistentSegment consistent_segment(const Observation& rows, const Vec3& axis, size_t first,
+                                     size_t last) {
+  ConsistentSegment whole = {first, last, ""};
+  if (is_commanded(rows.schedule) || !angles_over_weight(rows, axis).row.empty()) return whole;
+  const AxisReadings read = smoothed_rates(rows, axis, first, last);
+  std::vector<Break> breaks;
+  // A long window detects a weak torque. The shortest window that detects a break locates it best.
+  for (size_t window = 12; breaks.empty() && 8 * window <= read.row.size(); window *= 2) {
+    breaks = breaks_of(read, window);
+  }
+  if (breaks.empty()) return whole;
+  ConsistentSegment longest = {first, first, ""};
+  size_t begin = first;
+  const Break* since = nullptr;
+  const auto close = [&](size_t end, const Break* until) {
+    if (end - begin > longest.last - longest.first) {
+      longest = {begin, end, ""};
+      const Break& edge = since != nullptr ? *since : *until;
+      longest.left_out = "the angular acceleration changes suddenly at " +
+                         readable_number(read.time_s[edge.at], 4) + " s, from " +
+                         readable_number(edge.before_rad_s2, 3) + " to " +
+                         readable_number(edge.after_rad_s2, 3) + " rad/s²: another torque acts ";
+      longest.left_out += since != nullptr && until != nullptr ? "before and after"
+                          : since != nullptr                   ? "before"
+                                                               : "after";
+    }
+  };
+  constexpr size_t passing = 3;  // rows that the median of five blurs around a break
+  for (const Break& found : breaks) {
+    const size_t at = read.row[found.at];
+    close(at > first + passing ? at - passing : first, &found);
+    begin = std::min(last, at + passing);
+    since = &found;
+  }
+  close(last, nullptr);
+  return longest;
+}
+
 // Rows from `first` to before `last` in which the rotation about the only axis follows one law. The
 // reasons for leaving out the others are added to `exclusions`.
 std::pair<size_t, size_t> rows_of_one_law(const Observation& rows, const Vec3& axis, size_t first,
@@ -240,21 +388,11 @@ std::optional<Recording> on_a_line(const Recording& recording, const Platform& p
 }  // namespace
 
 void refuse_jump_of_clock(const Recording& recording, const std::string& name) {
-  constexpr double longest_gap = 10.0;
-  double gaps_s = 0.0, longest_s = 0.0;
-  RecordingReport::Gap longest;
-  for (const RecordingReport::Gap& gap : recording.report.gaps) {
-    const double gap_s = gap.to_s - gap.from_s;
-    gaps_s += gap_s;
-    if (gap_s > longest_s) longest = gap;
-    longest_s = std::max(longest_s, gap_s);
-  }
-  if (recording.rows() < 2) return;
-  const double recorded_s = recording.time_s.back() - recording.time_s.front() - gaps_s;
-  if (!(longest_s > longest_gap * recorded_s)) return;
+  const std::optional<ClockJump> jump = jump_of_clock(recording);
+  if (!jump) return;
   throw InputError({name, 0}, "t_s",
                    printed("nothing from t_s = %.10g to %.10g, of a recording of %.4g s in all",
-                           longest.from_s, longest.to_s, recorded_s),
+                           jump->gap.from_s, jump->gap.to_s, jump->recorded_s),
                    "a clock that does not jump; with several segments a file each");
 }
 
@@ -275,148 +413,6 @@ Segments observe_segments(const Recording& recording, const std::string& name,
   }
   if (angles) result.angles = *angles;
   return result;
-}
-
-namespace {
-
-// Rates, each replaced by the median of five neighbours: a lost count of an encoder halves one or
-// two readings.
-AxisReadings smoothed_rates(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
-  AxisReadings read = rates_about(rows, axis, first, last);
-  const std::vector<double> raw = read.value;
-  for (size_t i = 2; i + 2 < raw.size(); ++i) {
-    std::array<double, 5> near = {raw[i - 2], raw[i - 1], raw[i], raw[i + 1], raw[i + 2]};
-    std::nth_element(near.begin(), near.begin() + 2, near.end());
-    read.value[i] = near[2];
-  }
-  return read;
-}
-
-// A straight line through the rates [first, last).
-struct Line {
-  double slope_rad_s2 = 0.0, error_rad_s2 = 0.0, least_rad_s = 0.0, most_rad_s = 0.0;
-
-  bool keeps_away_from_zero() const {
-    const double far = std::max(std::abs(least_rad_s), std::abs(most_rad_s));
-    return least_rad_s * most_rad_s > 0.0 &&
-           std::min(std::abs(least_rad_s), std::abs(most_rad_s)) > 0.05 * far;
-  }
-};
-
-Line line_through(const AxisReadings& read, size_t first, size_t last) {
-  const auto count = static_cast<double>(last - first);
-  double mean_s = 0.0, mean_rad_s = 0.0;
-  Line line;
-  line.least_rad_s = line.most_rad_s = read.value[first];
-  for (size_t i = first; i < last; ++i) {
-    mean_s += read.time_s[i] / count;
-    mean_rad_s += read.value[i] / count;
-    line.least_rad_s = std::min(line.least_rad_s, read.value[i]);
-    line.most_rad_s = std::max(line.most_rad_s, read.value[i]);
-  }
-  double spread_s2 = 0.0, product = 0.0, square = 0.0;
-  for (size_t i = first; i < last; ++i) {
-    const double t = read.time_s[i] - mean_s, w = read.value[i] - mean_rad_s;
-    spread_s2 += t * t;
-    product += t * w;
-    square += w * w;
-  }
-  line.slope_rad_s2 = product / spread_s2;
-  const double rest = std::max(0.0, square - line.slope_rad_s2 * product) / (count - 2.0);
-  line.error_rad_s2 = std::sqrt(rest / spread_s2);
-  return line;
-}
-
-struct Break {
-  size_t at = 0;  // index into the readings
-  double before_rad_s2 = 0.0, after_rad_s2 = 0.0, error_rad_s2 = 0.0;
-
-  double change_rad_s2() const { return std::abs(after_rad_s2 - before_rad_s2); }
-  double larger_rad_s2() const { return std::max(std::abs(before_rad_s2), std::abs(after_rad_s2)); }
-  double standard_errors() const { return change_rad_s2() / error_rad_s2; }
-};
-
-// Slopes of `window` readings on both sides of every reading at which the rate keeps its sign and
-// is not near zero. For long windows only every (window/48)-th reading is used; the time would
-// otherwise grow with the square of the length.
-std::vector<Break> changes_of(const AxisReadings& read, size_t window) {
-  std::vector<Break> changes;
-  const size_t step = std::max<size_t>(1, window / 48);
-  for (size_t i = window; i + window <= read.row.size(); i += step) {
-    const Line before = line_through(read, i - window, i),
-               after = line_through(read, i, i + window);
-    const bool goes_on = before.keeps_away_from_zero() && after.keeps_away_from_zero() &&
-                         before.most_rad_s * after.most_rad_s > 0.0;
-    if (!goes_on) continue;
-    changes.push_back({i, before.slope_rad_s2, after.slope_rad_s2,
-                       std::hypot(before.error_rad_s2, after.error_rad_s2)});
-  }
-  return changes;
-}
-
-// The changes of slope that are much larger than all others. Among neighbouring changes, only the
-// most significant is kept. An oscillating law has such changes everywhere and therefore no breaks.
-std::vector<Break> breaks_of(const AxisReadings& read, size_t window) {
-  constexpr double least_standard_errors = 10.0, least_fraction = 0.5, least_medians = 8.0;
-  const std::vector<Break> changes = changes_of(read, window);
-  if (changes.empty()) return {};
-  std::vector<double> sizes_rad_s2;
-  for (const Break& b : changes) sizes_rad_s2.push_back(b.change_rad_s2());
-  const double median_rad_s2 = upper_median(std::move(sizes_rad_s2));
-  std::vector<Break> breaks;
-  for (const Break& found : changes) {
-    if (found.change_rad_s2() < least_fraction * found.larger_rad_s2() ||
-        found.change_rad_s2() < least_medians * median_rad_s2 ||
-        !(found.standard_errors() >= least_standard_errors)) {  // 0/0 for equal readings
-      continue;
-    }
-    if (breaks.empty() || found.at - breaks.back().at > window) {
-      breaks.push_back(found);
-    } else if (found.standard_errors() > breaks.back().standard_errors()) {
-      breaks.back() = found;
-    }
-  }
-  return breaks;
-}
-
-}  // namespace
-
-ConsistentSegment consistent_segment(const Observation& rows, const Vec3& axis, size_t first,
-                                     size_t last) {
-  ConsistentSegment whole = {first, last, ""};
-  if (is_commanded(rows.schedule) || !angles_over_weight(rows, axis).row.empty()) return whole;
-  const AxisReadings read = smoothed_rates(rows, axis, first, last);
-  std::vector<Break> breaks;
-  // A long window detects a weak torque. The shortest window that detects a break locates it best.
-  for (size_t window = 12; breaks.empty() && 8 * window <= read.row.size(); window *= 2) {
-    breaks = breaks_of(read, window);
-  }
-  if (breaks.empty()) return whole;
-  ConsistentSegment longest = {first, first, ""};
-  size_t begin = first;
-  const Break* since = nullptr;
-  const auto close = [&](size_t end, const Break* until) {
-    if (end - begin > longest.last - longest.first) {
-      longest = {begin, end, ""};
-      const Break& edge = since != nullptr ? *since : *until;
-      longest.left_out = "the angular acceleration changes suddenly at " +
-                         readable_number(read.time_s[edge.at], 4) + " s, from " +
-                         readable_number(edge.before_rad_s2, 3) + " to " +
-                         readable_number(edge.after_rad_s2, 3) + " rad/s²: another torque acts ";
-      longest.left_out += since != nullptr && until != nullptr ? "before and after"
-                          : since != nullptr                   ? "before"
-                                                               : "after";
-    }
-  };
-  constexpr size_t passing = 3;  // rows that the median of five blurs around a break
-  for (const Break& found : breaks) {
-    const size_t at = read.row[found.at];
-    close(at > first + passing ? at - passing : first, &found);
-    begin = std::min(last, at + passing);
-    since = &found;
-  }
-  close(last, nullptr);
-  return longest;
 }
 
 }  // namespace photorque

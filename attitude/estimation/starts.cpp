@@ -1,10 +1,10 @@
-#include "attitude/estimation/starts.h"
+// Initial conditions of runs without readings of attitude: a search over many starts.
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "attitude/estimation/hypothesis.h"
+#include "attitude/estimation/fit.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/numerics/order.h"
@@ -105,12 +105,6 @@ std::vector<Quat> attitudes_of(const AttitudeModel& model, const Observation& se
   return tilted_attitudes(tilt.value_or(0.0), about_z);
 }
 
-// Rate of an angle at the start of the run.
-double first_slope(const Observation& seen, Scalar scalar) {
-  constexpr int most = 10;
-  return first_line(seen, scalar, most).slope_1_s;
-}
-
 // Initial rates to try. Measured axes keep the rates of `base`. The rest of the measured magnitude
 // is along all directions of the unmeasured axes.
 std::vector<Vec3> rates_of(const Observation& seen, const Vec3& base, const Quat& attitude) {
@@ -126,7 +120,8 @@ std::vector<Vec3> rates_of(const Observation& seen, const Vec3& base, const Quat
     if (!is_read[static_cast<size_t>(k)]) known[k] = 0.0;
   }
   if (!magnitude) {
-    const double about_z = first_slope(seen, Scalar::yaw);
+    constexpr int most = 10;
+    const double about_z = first_line(seen, Scalar::yaw, most).slope_1_s;
     const Vec3 rate = attitude.conjugate() * Vec3(0.0, 0.0, about_z);
     for (int k = 0; k < 3; ++k) {
       if (!is_read[static_cast<size_t>(k)]) known[k] = rate[k];

@@ -86,7 +86,7 @@ constexpr int steps_per_period = 32;
 LocalMotion local_motion(const AxisReadings& read) {
   constexpr size_t fewest = 6, fewest_periods = 3;
   LocalMotion result;
-  const double whole_s = period_s(read);
+  const double whole_s = read.row.empty() ? 0.0 : period_s(read);
   if (!(whole_s > 0.0)) return result;
   std::vector<double> intervals_s(read.row.size() - 1);
   for (size_t i = 0; i < intervals_s.size(); ++i) {
@@ -334,10 +334,6 @@ AxisReadings swing_of(const Observation& rows, const Vec3& axis, size_t first, s
   return read.row.size() < fewest_readings ? AxisReadings() : read;
 }
 
-LocalMotion motion_of(const AxisReadings& read) {
-  return read.row.empty() ? LocalMotion() : local_motion(read);
-}
-
 // A series at the steps of local motion, minus its mean over a period around each step. Small
 // errors of an angle that last long accumulate in integrals; subtracting the mean removes them.
 Eigen::VectorXd without_slow_part(const Eigen::VectorXd& values) {
@@ -412,7 +408,7 @@ RestoringLaw law_of_periods(const AxisReadings& read) {
 
 size_t released_at(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
   constexpr double usual = 3.0, held = 4.5;
-  const LocalMotion local = motion_of(swing_of(rows, axis, first, last));
+  const LocalMotion local = local_motion(swing_of(rows, axis, first, last));
   if (local.row.empty()) return first;
   const Eigen::VectorXd off = scaled_residuals(local.motion);
   int lawful = 0;
@@ -432,7 +428,7 @@ RestoringLaw restoring_law(const Observation& rows, const Vec3& axis) {
   const AxisReadings read = swing_of(rows, axis, 0, rows.blocks());
   if (read.row.empty()) return RestoringLaw::unclear;
   if (const RestoringLaw law = law_of_periods(read); law != RestoringLaw::unclear) return law;
-  const LocalMotion local = motion_of(read);
+  const LocalMotion local = local_motion(read);
   if (local.row.empty() || !local.is_fine) return RestoringLaw::unclear;
   const Eigen::MatrixXd& motion = local.motion;
   const auto angle = motion.col(0).array();

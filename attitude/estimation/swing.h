@@ -22,12 +22,9 @@ std::vector<Passage> passages(const std::vector<double>& time_s, const std::vect
 // First of the rows [first, last) from which on the angle about `axis` swings freely. Before it,
 // for example, a hand sets the body swinging.
 //
-// Local cubics through a quarter of a period, or through nine readings if a quarter has fewer, give
-// angle, rate and acceleration. One law of angle and rate (a constant, sin, cos and the angle
-// itself, sign, rate, rate |rate|) is fitted to all accelerations by a robust regression (Tukey's
-// biweight). The body swings freely when the residuals of this law stay below a limit for a quarter
-// of a period. The limit is three times the usual scatter, or 5 % of the accelerations nearby if
-// that is larger. A rest at the end is ignored.
+// One law of angle and rate is fitted to the accelerations of local cubics by a robust regression.
+// The body swings freely when the residuals of this law stay below three times their usual scatter
+// (or the error of the cubics) for a quarter of a period. A rest at the end is ignored.
 //
 // Returns `first` if the body swings less than three times, if there are too few rows, or if more
 // than a quarter of the rows would be left out.
@@ -59,13 +56,12 @@ bool swings(const std::vector<Observation>& runs, const Vec3& axis);
 // line is proportional to the angle.
 //
 // A swing over more than a turn between turning points is that of a spring. Otherwise, the result
-// is the law under which the periods depend on the amplitudes with half the scatter of the other
-// law, or with an eighth for two to seven periods. If neither does, and there are 28 readings per
-// period, each law plus dry, viscous and quadratic friction is fitted to the rates of local cubics
-// (integrated over time). The law with the smaller residual is chosen if it reduces χ² by a tenth
-// and by 16, for the number of independent residuals that their correlation leaves. `unclear` for
-// small swings, for which both laws are equivalent, and for too few readings. Without an angle,
-// those of angles_of_swing() are used.
+// is the law under which the periods depend on the amplitudes with clearly less scatter. If neither
+// does, and the readings are dense enough, each law plus friction is fitted to the rates of local
+// cubics (integrated over time). The law with the smaller residual is chosen if it reduces χ² by
+// more than chance does, for the number of independent residuals that their correlation leaves.
+// `unclear` for small swings, for which both laws are equivalent, and for too few readings. Without
+// an angle, those of angles_of_swing() are used.
 enum class RestoringLaw { unclear, weight, spring };
 RestoringLaw restoring_law(const Observation& rows, const Vec3& axis);
 

@@ -78,52 +78,44 @@ RunErrors run_errors(const std::vector<AttitudeEstimate>& estimates, const Truth
   return errors;
 }
 
-void RunEnsemble::add(const Estimation& estimation, const TruthTrack& truth) {
-  const size_t rows = estimation.filtered.size();
-  if (runs_++ == 0) {
-    chi2_filtered_.assign(rows, 0.0);
-    chi2_smoothed_ = square_filtered_ = square_smoothed_ = chi2_filtered_;
-  }
-  const auto put = [&](const std::vector<AttitudeEstimate>& estimates, std::vector<double>& chi2,
-                       std::vector<double>& square) {
-    for (size_t i = 0; i < std::min(rows, estimates.size()); ++i) {
-      if (!truth[i]) continue;
-      const NormalisedError error = normalised_error(estimates[i], *truth[i]);
-      numbers_ = error.numbers;
-      chi2[i] += error.chi2;
-      square[i] += std::pow(attitude_error_rad(estimates[i], *truth[i]), 2);
+RunEnsemble ensemble_of(const std::vector<std::pair<Estimation, TruthTrack>>& runs) {
+  const auto count = static_cast<double>(std::max<size_t>(1, runs.size()));
+  int numbers = 6;
+  const auto rows_of = [&](std::vector<AttitudeEstimate> Estimation::*which) {
+    RunEnsemble::Rows rows;
+    for (const auto& [estimation, truth] : runs) {
+      rows.nees.resize(estimation.filtered.size(), 0.0);
+      rows.rms_rad.resize(estimation.filtered.size(), 0.0);
+      const std::vector<AttitudeEstimate>& estimates = estimation.*which;
+      for (size_t i = 0; i < estimates.size(); ++i) {
+        if (!truth[i]) continue;
+        const NormalisedError error = normalised_error(estimates[i], *truth[i]);
+        numbers = error.numbers;
+        rows.nees[i] += error.chi2;
+        rows.rms_rad[i] += std::pow(attitude_error_rad(estimates[i], *truth[i]), 2);
+      }
     }
+    for (double& x : rows.nees) x /= count;
+    for (double& x : rows.rms_rad) x = std::sqrt(x / count);
+    return rows;
   };
-  put(estimation.filtered, chi2_filtered_, square_filtered_);
-  put(estimation.smoothed, chi2_smoothed_, square_smoothed_);
-  const auto sum = [](InnovationSum& into, const InnovationSum& one) {
-    into.chi2 += one.chi2;
-    into.numbers += one.numbers;
-  };
-  sum(attitude_, estimation.attitude);
-  sum(gyro_, estimation.gyro);
+  RunEnsemble all{
+      runs.size(), rows_of(&Estimation::filtered), rows_of(&Estimation::smoothed), {}, {}, {}};
+  const Band whole = chi2_band_95(numbers * count);
+  all.band = {whole.low / count, whole.high / count};
+  for (const auto& [estimation, truth] : runs) {
+    all.attitude.chi2 += estimation.attitude.chi2;
+    all.attitude.numbers += estimation.attitude.numbers;
+    all.gyro.chi2 += estimation.gyro.chi2;
+    all.gyro.numbers += estimation.gyro.numbers;
+  }
+  return all;
 }
 
-std::vector<double> RunEnsemble::mean_of(std::vector<double> sums) const {
-  for (double& sum : sums) sum /= std::max(1, runs_);
-  return sums;
-}
-
-std::vector<double> RunEnsemble::rms_of(const std::vector<double>& squares) const {
-  std::vector<double> rms = mean_of(squares);
-  for (double& x : rms) x = std::sqrt(x);
-  return rms;
-}
-
-Band RunEnsemble::band() const {
-  const Band whole = chi2_band_95(static_cast<double>(numbers_) * std::max(1, runs_));
-  return {whole.low / std::max(1, runs_), whole.high / std::max(1, runs_)};
-}
-
-double RunEnsemble::part_in_band(const std::vector<double>& nees, size_t from) const {
+double RunEnsemble::part_in_band(const Rows& rows, size_t from) const {
   double inside = 0.0;
-  for (size_t i = from; i < nees.size(); ++i) inside += band().holds(nees[i]) ? 1.0 : 0.0;
-  return nees.size() > from ? inside / static_cast<double>(nees.size() - from) : 0.0;
+  for (size_t i = from; i < rows.nees.size(); ++i) inside += band.holds(rows.nees[i]) ? 1.0 : 0.0;
+  return rows.nees.size() > from ? inside / static_cast<double>(rows.nees.size() - from) : 0.0;
 }
 
 }  // namespace photorque

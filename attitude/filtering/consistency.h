@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "attitude/filtering/kalman.h"
@@ -48,33 +49,20 @@ RunErrors run_errors(const std::vector<AttitudeEstimate>& estimates, const Truth
                      size_t from = 0);
 
 // Errors of many runs of the same length, row by row.
-class RunEnsemble {
- public:
-  void add(const Estimation& estimation, const TruthTrack& truth);
+struct RunEnsemble {
+  size_t runs = 0;
+  // Mean over the runs of the normalised error squared, and root-mean-square attitude error.
+  struct Rows {
+    std::vector<double> nees, rms_rad;
+  };
+  Rows filtered, smoothed;
+  Band band;  // the 95 % interval of these means
+  InnovationSum attitude, gyro;
 
-  int runs() const { return runs_; }
-  // Mean over the runs of the normalised error squared, for filter and smoother.
-  std::vector<double> nees_filtered() const { return mean_of(chi2_filtered_); }
-  std::vector<double> nees_smoothed() const { return mean_of(chi2_smoothed_); }
-  // The 95 % interval of these means.
-  Band band() const;
   // Fraction of the rows from `from` on whose mean is in the band.
-  double part_in_band(const std::vector<double>& nees, size_t from) const;
-  // Root-mean-square attitude errors over the runs [rad].
-  std::vector<double> rms_filtered_rad() const { return rms_of(square_filtered_); }
-  std::vector<double> rms_smoothed_rad() const { return rms_of(square_smoothed_); }
-  const InnovationSum& attitude() const { return attitude_; }
-  const InnovationSum& gyro() const { return gyro_; }
-
- private:
-  std::vector<double> mean_of(std::vector<double> sums) const;
-  std::vector<double> rms_of(const std::vector<double>& squares) const;
-
-  int runs_ = 0;
-  int numbers_ = 6;
-  std::vector<double> chi2_filtered_, chi2_smoothed_, square_filtered_, square_smoothed_;
-  InnovationSum attitude_, gyro_;
+  double part_in_band(const Rows& rows, size_t from) const;
 };
+RunEnsemble ensemble_of(const std::vector<std::pair<Estimation, TruthTrack>>& runs);
 
 // The 95 % interval of InnovationSum::per_number().
 Band innovation_band(const InnovationSum& sum);

@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "attitude/disturbances/kind.h"
-#include "attitude/observation/observation.h"
+#include "attitude/observation/blocks.h"
 #include "core/errors.h"
-#include "core/numerics/median.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
 #include "core/transform.h"
@@ -42,15 +41,6 @@ bool is_of_instruments(const Disturbance& disturbance) {
 // Angular frequency of the fastest oscillation under the torques, or the rate of a growth.
 double oscillation_1_s(const MatX& rate_matrix) {
   return std::sqrt(rate_matrix.block<3, 3>(MotionModel::rate, MotionModel::attitude).norm());
-}
-
-// Median of the recorded rate; 0 without a gyro.
-double usual_rate_rad_s(const Observation& seen) {
-  std::vector<double> rates;
-  for (size_t i = 0; i < seen.blocks(); ++i) {
-    if (seen.gyro_rows[i].minCoeff() > 0.0) rates.push_back(seen.gyro_rad_s[i].norm());
-  }
-  return rates.empty() ? 0.0 : upper_median(std::move(rates));
 }
 
 }  // namespace
@@ -307,7 +297,7 @@ Transition MotionModel::advance(FilterState& state, double time_s, const Vec3& g
 }
 
 void MotionModel::refuse_rows_far_apart(const Observation& seen, const AttitudeModel& model) {
-  double fastest_1_s = seen.has_some_attitude() ? usual_rate_rad_s(seen) : 0.0;
+  double fastest_1_s = seen.has_some_attitude() ? median_gyro_rate_rad_s(seen) : 0.0;
   try {
     const MotionModel motion(model, {}, {.uses_gyro = false}, seen.schedule);
     const FilterState first =
@@ -474,13 +464,7 @@ Measurement MotionModel::of_yaw(const FilterState& state, double seen_rad) const
 }
 
 Vec3 MotionModel::inertial_rate_rad_s(const FilterState& state) const {
-  AttitudeModel model = state.dynamics->model();
-  std::erase_if(model.disturbances,
-                [](const Disturbance& d) { return d.stage == Stage::measurement; });
-  const Dynamics dynamics(model);
-  PlatformState mean = state.mean;
-  mean.extra.resize(static_cast<size_t>(dynamics.size() - component::extra));
-  return lane_of(dynamics.at(mean).gyro_rad_s, 0);
+  return lane_of(state.dynamics->at(state.mean).inertial_rate_body_rad_s, 0);
 }
 
 double MotionModel::camera_delay_s() const {

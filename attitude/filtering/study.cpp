@@ -174,7 +174,7 @@ void require_noise(const Sensors& sensors) {
 RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
                              const std::string& name, const Platform& platform) {
   RecordingNoise result{sensors, {}};
-  const bool knows_camera = states_camera_noise(sensors), knows_gyro = states_gyro_noise(sensors);
+  const bool knows_camera = states_noise(sensors, 0), knows_gyro = states_noise(sensors, 3);
   if (knows_camera && knows_gyro) return result;
   const std::vector<Observation> seen = {observe(recording, name, platform)};
   const NoiseLevels usual;
@@ -183,8 +183,8 @@ RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
     Vec3& noise_rad = result.sensors.camera->noise_rad;
     for (int k = 0; k < 3; ++k) {
       const bool sees = seen[0].sees_axis[static_cast<size_t>(k)];
-      noise_rad[k] = sees ? reading_level(seen, k).value_or(usual.camera_rad[k]) : noise_rad[k];
-      if (!(noise_rad[k] > 0.0)) noise_rad[k] = usual.camera_rad[k];
+      noise_rad[k] = sees ? reading_level(seen, k).value_or(usual.of(k).level) : noise_rad[k];
+      if (!(noise_rad[k] > 0.0)) noise_rad[k] = usual.of(k).level;
     }
     result.found.push_back(printed("noise of attitudes, from neighbours: %.3g, %.3g, %.3g arcsec",
                                    in_arcsec(noise_rad[0]), in_arcsec(noise_rad[1]),
@@ -199,7 +199,7 @@ RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
     }
     if (!result.sensors.gyro) result.sensors.gyro.emplace();
     result.sensors.gyro->noise_rad_s =
-        axes > 0.0 ? std::sqrt(square / axes) : usual.gyro_rad_s.maxCoeff();
+        axes > 0.0 ? std::sqrt(square / axes) : usual.levels(3).maxCoeff();
     result.found.push_back(
         printed("noise of rates, from neighbours: %.3g rad/s", result.sensors.gyro->noise_rad_s));
   }
@@ -351,20 +351,18 @@ ConsistencyResult consistency_of(const EstimateStudy& study, const PropagationRu
     all[i] = {estimate_attitude(model, readings), std::move(simulated.truth)};
     if (progress) progress(++done / static_cast<double>(runs));
   });
-  for (const auto& [estimation, truth] : all) result.ensemble.add(estimation, truth);
+  result.ensemble = ensemble_of(all);
   const RunEnsemble& ensemble = result.ensemble;
-  const std::vector<double> filtered = ensemble.nees_filtered(),
-                            smoothed = ensemble.nees_smoothed();
+  const std::vector<double>&filtered = ensemble.filtered.nees, &smoothed = ensemble.smoothed.nees,
+        &rms_f = ensemble.filtered.rms_rad, &rms_s = ensemble.smoothed.rms_rad;
   const size_t from = settled_row(filtered.size());
-  result.part_filtered = ensemble.part_in_band(filtered, from);
-  result.part_smoothed = ensemble.part_in_band(smoothed, from);
-  const std::vector<double> rms_f = ensemble.rms_filtered_rad(),
-                            rms_s = ensemble.rms_smoothed_rad();
+  result.part_filtered = ensemble.part_in_band(ensemble.filtered, from);
+  result.part_smoothed = ensemble.part_in_band(ensemble.smoothed, from);
   Plot plot{"normalised_errors",
             "Normalised errors squared, mean of " + std::to_string(study.runs) +
                 " runs, and their 95 % band",
             "time [s]", "NEES of attitude and rate"};
-  plot.levels = {ensemble.band().low, ensemble.band().high};
+  plot.levels = {ensemble.band.low, ensemble.band.high};
   Plot::Curve f{"filter"}, s{"smoother"}, ef{"filter"}, es{"smoother"};
   for (size_t i = 0; i < filtered.size(); ++i) {
     if (rms_f[i] > 0.0 && i + 1 < filtered.size()) {

@@ -60,22 +60,8 @@ double bound_rate_slope(const Disturbance& disturbance, const ExtraState& state,
   return (rate_body_rad_s[component] - unit[component] * unit.dot(rate_body_rad_s)) / axis.norm();
 }
 
-PlacedParameters scalar_parameter(const Settings& settings, const ScalarKey& key) {
-  const bool is_default = key.otherwise_SI && !settings.has(key.name);
-  const Uncertain x =
-      is_default ? Uncertain{*key.otherwise_SI} : settings.uncertain(key.name, key.range);
-  return {key.first, {{key.name, -1, x.value, x.sigma}}};
-}
-
-PlacedParameters vector_parameter(const Settings& settings, const VectorKey& key) {
-  const UncertainVec3 v = settings.uncertain_vector(key.name);
-  Parameters all;
-  for (int i = 0; i < 3; ++i) all.push_back({key.name, i, v.value[i], v.sigma[i]});
-  return {key.first, all};
-}
-
 PlacedParameters direction_parameter(const Settings& settings, const VectorKey& key) {
-  PlacedParameters axis = vector_parameter(settings, key);
+  PlacedParameters axis = parameters_of(settings, key);
   if (!(vector_at(axis.parameters, 0).norm() > 0.0)) {
     throw settings.error(key.name, "a zero vector", "a direction");
   }

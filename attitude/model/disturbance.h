@@ -2,35 +2,7 @@
 //
 // A disturbance is one file NAME.cpp and the word NAME in CMakeLists.txt. Its law is written once,
 // as a template over the scalar type, and runs on Lanes (values at eight instants) and on DualLanes
-// (the same with exact derivatives). A complete file:
-//
-//   #include "attitude/disturbances/kind.h"
-//
-//   namespace photorque {
-//   namespace {
-//
-//   constexpr ScalarKey coefficient("coefficient_N_m_s", Range::not_negative(), "c in T = −c ω");
-//
-//   // T = −c ω.
-//   struct BearingDrag final : TorqueLaw<BearingDrag> {
-//     template <class T>
-//     Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-//       return -own[coefficient] * now.rate_body_rad_s;
-//     }
-//   };
-//
-//   }  // namespace
-//
-//   DisturbanceKind kind() {
-//     return {.name = "bearing_drag",
-//             .summary = "viscous drag of the bearing's air film, linear in the rate",
-//             .read = read_law<BearingDrag, Stage::torque, coefficient>,
-//             .screening = {.parametrisations = {{"a sentence for the report",
-//                                                 {EffectKey::number(coefficient.name, 2e-5)}}}},
-//             .keys = {coefficient}};
-//   }
-//
-//   }  // namespace photorque
+// (the same with exact derivatives). A short complete file is disturbances/plane/sliding_drag.cpp.
 #pragma once
 
 #include <filesystem>
@@ -364,12 +336,6 @@ struct PlacedParameters {
   int first = 0;
   Parameters parameters;
 };
-// One number.
-PlacedParameters scalar_parameter(const Settings& settings, const ScalarKey& key);
-// Three numbers.
-PlacedParameters vector_parameter(const Settings& settings, const VectorKey& key);
-// Three numbers that are not all zero. InputError for a zero vector.
-PlacedParameters direction_parameter(const Settings& settings, const VectorKey& key);
 // `size` numbers, e.g. the six of a symmetric matrix.
 PlacedParameters array_parameter(const Settings& settings, const std::string& key, size_t size,
                                  int first = 0);
@@ -377,13 +343,21 @@ PlacedParameters array_parameter(const Settings& settings, const std::string& ke
 template <int size>
 PlacedParameters parameters_of(const Settings& settings, const KeyOf<size>& key) {
   if constexpr (size == 1) {
-    return scalar_parameter(settings, key);
+    const bool is_default = key.otherwise_SI && !settings.has(key.name);
+    const Uncertain x =
+        is_default ? Uncertain{*key.otherwise_SI} : settings.uncertain(key.name, key.range);
+    return {key.first, {{key.name, -1, x.value, x.sigma}}};
   } else if constexpr (size == 3) {
-    return vector_parameter(settings, key);
+    const UncertainVec3 v = settings.uncertain_vector(key.name);
+    PlacedParameters all{key.first, {}};
+    for (int i = 0; i < 3; ++i) all.parameters.push_back({key.name, i, v.value[i], v.sigma[i]});
+    return all;
   } else {
     return array_parameter(settings, key.name, size, key.first);
   }
 }
+// Three numbers that are not all zero. InputError for a zero vector.
+PlacedParameters direction_parameter(const Settings& settings, const VectorKey& key);
 // Number of values that the user wrote for `key`: 0 for a single number, the length of an array,
 // nine for three rows of three. In { value = …, sigma = … } it counts those of `value`.
 size_t count_as_written(const Settings& settings, std::string_view key);

@@ -380,6 +380,7 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s,
   result.array_power_W = now.array_power_W;
   result.illumination = now.illumination;
   result.gravity_gradient_1_s2 = now.gravity_gradient_1_s2;
+  result.inertial_rate_body_rad_s = now.inertial_rate_body_rad_s;
   result.gyro_rad_s = now.inertial_rate_body_rad_s + now.gyro_error_rad_s;
   result.camera_error_rad = now.camera_error_rad;
   result.camera_delay_s = now.camera_delay_s;

@@ -109,6 +109,7 @@ class Dynamics {
     Lanes array_power_W;
     Lanes illumination;
     Lanes gravity_gradient_1_s2;  // see EvaluationContext
+    Vec3Of<Lanes> inertial_rate_body_rad_s;
     // Readings of noiseless instruments; see EvaluationContext.
     Vec3Of<Lanes> gyro_rad_s;
     Vec3Of<Lanes> camera_error_rad;

@@ -44,14 +44,9 @@ struct Platform {
   bool has_air_bearing() const { return has_bearing() && !turns_about_one_axis(); }
 };
 
-// Reads [platform]. A one_axis platform has the axis "x", "y" or "z" (default); a planar platform
-// turns about z. Their `inertia_kg_m2` may be one number, the moment about that axis. Their inertia
-// and `mass_kg` default to one: torques are then per unit of inertia, and forces per unit of mass.
-// A free platform may omit the mass.
-// `mass_kg` and `inertia_kg_m2` may be { value, sigma }, see mass_sigma_kg() and
-// inertia_sigma_kg_m2(). InputError if the mass is not positive, or if the inertia is not
-// symmetric, not positive definite or violates the triangle inequality (the largest principal
-// moment exceeds the sum of the others, which is impossible for a body).
+// Reads [platform], whose keys are platform_table(). A planar platform turns about z. With the
+// default inertia and mass of one, torques are per unit of inertia and forces per unit of mass.
+// InputError if the mass is not positive or the inertia not valid (check_inertia()).
 Platform read_platform(const Settings& settings);
 Key platform_table();
 
@@ -61,7 +56,9 @@ Mat3 inertia_sigma_kg_m2(const Settings& platform);
 // Sigma of [platform] mass_kg = { value, sigma }; zero if none is given.
 double mass_sigma_kg(const Settings& platform);
 
-// InputError at `where` if the inertia is not valid, see read_platform(). `key` names the value.
+// InputError at `where` if the inertia is not symmetric, not positive definite or violates the
+// triangle inequality: the largest principal moment exceeds the sum of the others, which is
+// impossible for a body. `key` names the value.
 void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const std::string& key);
 
 // The state of a platform: attitude, rate, charge, and the extra states of its disturbances.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "attitude/observation/blocks.h"
 #include "attitude/observation/camera_noise.h"
 #include "core/numerics/median.h"
 
@@ -94,24 +95,16 @@ void drop_bias_outliers(std::vector<double>& values) {
   }
 }
 
-double usual_rate_rad_s(const Observation& seen) {
-  std::vector<double> rates;
-  for (size_t i = 0; i < seen.blocks(); ++i) {
-    if (seen.gyro_rows[i].minCoeff() > 0.0) rates.push_back(seen.gyro_rad_s[i].norm());
-  }
-  return rates.empty() ? 0.0 : upper_median(std::move(rates));
-}
-
 // Whether the rotation between two blocks is small enough for the linear model.
 bool turns_slowly(const Observation& seen) {
   const double apart_s =
       std::max(seen.row_interval_s,
                seen.duration_s() / static_cast<double>(std::max<size_t>(1, seen.blocks() - 1)));
-  return usual_rate_rad_s(seen) * apart_s < most_turn_rad;
+  return median_gyro_rate_rad_s(seen) * apart_s < most_turn_rad;
 }
 
 size_t blocks_of(const Observation& seen) {
-  const double turns = usual_rate_rad_s(seen) * seen.duration_s() / most_turn_rad;
+  const double turns = median_gyro_rate_rad_s(seen) * seen.duration_s() / most_turn_rad;
   return static_cast<size_t>(std::max(usual_blocks, turns));
 }
 
@@ -140,7 +133,7 @@ void add_piece(const Observation& seen, const Span& span, Equations& sums) {
     drop_bias_outliers(series.rate_rad_s);
     AngleNoise noise;
     noise.camera = seen.noise.of(k);
-    noise.gyro_rad_s = seen.noise.gyro_rad_s;
+    noise.gyro_rad_s = seen.noise.levels(3);
     noise.roughness = any_roughness;
     add_normal_equations(series, noise, matrix, right);
   }

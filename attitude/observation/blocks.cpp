@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/numerics/median.h"
+
 namespace photorque {
 
 namespace {
@@ -91,6 +93,14 @@ double fastest_rad_s(const Observation& seen) {
     }
   }
   return fastest;
+}
+
+double median_gyro_rate_rad_s(const Observation& seen) {
+  std::vector<double> rates;
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    if (seen.gyro_rows[i].minCoeff() > 0.0) rates.push_back(seen.gyro_rad_s[i].norm());
+  }
+  return rates.empty() ? 0.0 : upper_median(std::move(rates));
 }
 
 BlockInstants::BlockInstants(const Observation& seen, double fastest_rad_s)
@@ -201,26 +211,18 @@ struct BlockRows {
     return result;
   }
 
-  // The mean of the gyro readings, extrapolated to `at_s`.
-  Moved gyro_rate(int axis, double at_s) const {
-    return mean_of(
-        at_s, [&](size_t i) { return from.gyro_rows[i][axis]; },
-        [&](size_t i) { return from.gyro_rad_s[i][axis]; });
-  }
-
-  // The mean of the readings of one channel, extrapolated to `at_s` with the slope over three
+  // The mean of the readings of a rate or scalar, extrapolated to `at_s` with the slope over three
   // blocks, because channels with different rates have different mean times.
-  template <typename Weight, typename Value>
-  Moved mean_of(double at_s, const Weight& weight_of, const Value& value_of) const {
+  Moved mean_of(double at_s, int channel) const {
     const size_t length = last - first;
     const double reach_s = 1.5 * (from.time_s[last - 1] - from.time_s[first]) + 1e-9;
     double rows = 0.0, rate_sum = 0.0, time_sum_s = 0.0;
     double all = 0.0, all_rate = 0.0, all_s = 0.0, all_s2 = 0.0, all_product = 0.0;
     const size_t end = std::min(from.blocks(), last + length);
     for (size_t i = first - std::min(first, length); i < end; ++i) {
-      const double weight = weight_of(i), since_s = from.time_s[i] - at_s;
+      const double weight = from.rows_of(i, channel), since_s = from.time_s[i] - at_s;
       if (!(weight > 0.0) || std::abs(since_s) > reach_s) continue;
-      const double rate_rad_s = value_of(i);
+      const double rate_rad_s = from.value_of(i, channel);
       all += weight;
       all_rate += weight * rate_rad_s;
       all_s += weight * since_s;
@@ -285,37 +287,22 @@ struct BlockRows {
     return (reference * turn_by(sum / rows)).normalized();
   }
 
-  void append_to(Observation& seen) const {
+  void append_to(Observation& to) const {
     const double at_s = time_s();
-    seen.time_s.push_back(at_s);
+    const size_t block = append_block(from, at_s, to);
+    to.attitude[block] = mean_attitude(at_s);
+    for (size_t i = first; i < last; ++i) to.attitude_rows[block] += from.attitude_rows[i];
     Observation::Spread over = spread(at_s);
-    Vec3 gyro;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Moved moved = gyro_rate(axis, at_s);
-      gyro[axis] = moved.value;
-      over.gyro_moved_rad_s[axis] = moved.by;
+    for (int channel = 3; channel < channel_count; ++channel) {
+      if (!from.has_channel(channel)) continue;
+      const Moved mean = mean_of(at_s, channel);
+      to.value_of(block, channel) = mean.value;
+      if (channel < vector_channels) over.gyro_moved_rad_s[channel - 3] = mean.by;
+      for (size_t i = first; i < last; ++i) {
+        to.rows_in(block, channel) += from.rows_of(i, channel);
+      }
     }
-    seen.spread.push_back(over);
-    seen.attitude.push_back(mean_attitude(at_s));
-    double attitude_rows = 0.0;
-    Vec3 gyro_rows = Vec3::Zero();
-    for (size_t i = first; i < last; ++i) {
-      attitude_rows += from.attitude_rows[i];
-      gyro_rows += from.gyro_rows[i];
-    }
-    seen.attitude_rows.push_back(attitude_rows);
-    seen.gyro_rad_s.push_back(gyro);
-    seen.gyro_rows.push_back(gyro_rows);
-    for (size_t s = 0; s < from.scalar.size(); ++s) {
-      const ScalarReadings& all = from.scalar[s];
-      if (all.rows.empty()) continue;
-      const auto weight = [&](size_t i) { return all.rows[i]; };
-      seen.scalar[s].value.push_back(
-          mean_of(at_s, weight, [&](size_t i) { return all.value[i]; }).value);
-      double rows = 0.0;
-      for (size_t i = first; i < last; ++i) rows += all.rows[i];
-      seen.scalar[s].rows.push_back(rows);
-    }
+    to.spread.push_back(over);
   }
 };
 
@@ -351,14 +338,9 @@ class CentredReading {
               .normalized();
     }
     const double half_s2 = 0.5 * over.readings_s * over.readings_s;
-    for (int k = 0; k < 3; ++k) {
-      if (!is_read([&](size_t i) { return all_.gyro_rows[i][k]; })) continue;
-      to.gyro_rad_s.front()[k] -= half_s2 * bent([&](size_t i) { return all_.gyro_rad_s[i][k]; });
-    }
-    for (size_t s = 0; s < all_.scalar.size(); ++s) {
-      const ScalarReadings& read = all_.scalar[s];
-      if (read.rows.empty() || !is_read([&](size_t i) { return read.rows[i]; })) continue;
-      to.scalar[s].value.front() -= half_s2 * bent([&](size_t i) { return read.value[i]; });
+    for (int channel = 3; channel < channel_count; ++channel) {
+      if (!is_read([&](size_t i) { return all_.rows_of(i, channel); })) continue;
+      to.value_of(0, channel) -= half_s2 * bent(channel);
     }
   }
 
@@ -374,8 +356,8 @@ class CentredReading {
   bool is_read(const Rows& rows) const {
     return rows(block_ - 1) > 0.0 && rows(block_) > 0.0 && rows(block_ + 1) > 0.0;
   }
-  template <typename Value>
-  double bent(const Value& value) const {
+  double bent(int channel) const {
+    const auto value = [&](size_t i) { return all_.value_of(i, channel); };
     return curvature_of<double>({(value(block_) - value(block_ - 1)) / before_s(), before_s()},
                                 {(value(block_ + 1) - value(block_)) / after_s(), after_s()});
   }
@@ -399,6 +381,20 @@ Observation without_blocks(const Observation& seen) {
   result.gyro_rows.clear();
   result.scalar = {};
   return result;
+}
+
+size_t append_block(const Observation& seen, double time_s, Observation& to) {
+  to.time_s.push_back(time_s);
+  to.attitude.emplace_back(NAN, NAN, NAN, NAN);
+  to.attitude_rows.push_back(0.0);
+  to.gyro_rad_s.emplace_back(Vec3::Constant(NAN));
+  to.gyro_rows.emplace_back(Vec3::Zero());
+  for (size_t s = 0; s < seen.scalar.size(); ++s) {
+    if (seen.scalar[s].rows.empty()) continue;
+    to.scalar[s].value.push_back(NAN);
+    to.scalar[s].rows.push_back(0.0);
+  }
+  return to.blocks() - 1;
 }
 
 void append_mean(const Observation& from, size_t first, size_t last, Observation& to) {

@@ -12,6 +12,9 @@ namespace photorque {
 // 0.1 rad/s.
 double fastest_rad_s(const Observation& seen);
 
+// The median rate of the rows that have all three axes of the gyro; 0 without any.
+double median_gyro_rate_rad_s(const Observation& seen);
+
 // The times at which a model is evaluated for the mean over a block, and their weights: Gauss's
 // rules for the moments of the times of the rows. One time is enough for a single reading, and for
 // a block whose curvature is far below the noise. Two match the second moment, three the fourth
@@ -57,6 +60,8 @@ class BlockInstants {
 
 // A copy of an observation without its blocks.
 Observation without_blocks(const Observation& seen);
+// Appends a block without readings to such a copy of `seen`. Returns its index.
+size_t append_block(const Observation& seen, double time_s, Observation& to);
 
 // Appends the mean of the rows [first, last) of `from` as a block.
 void append_mean(const Observation& from, size_t first, size_t last, Observation& to);

@@ -18,11 +18,8 @@ struct Seen {
 
 Seen seen_by(double rows, double interval_s, double variance, double time_s) {
   if (!(variance > 0.0)) return {};
-  constexpr double longest_means = 20.0;
-  const double steps = std::min(interval_s / time_s, longest_means / std::max(1.0, rows));
-  const MeanOfCorrelated mean = mean_of_correlated(rows, steps);
-  const double less = rows < 1.0 ? 1.0 / rows - 1.0 : 0.0;
-  return {mean.reach, variance * (mean.variance - mean.reach * mean.reach + less)};
+  const MeanOfCorrelated mean = mean_of_correlated(rows, interval_s / time_s);
+  return {mean.reach, variance * (mean.variance - mean.reach * mean.reach)};
 }
 
 // Kalman filter with the states angle, rate, acceleration, the camera's correlated noise and, as a

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
+#include <array>
 #include <vector>
 
 #include "attitude/observation/observation.h"
@@ -24,23 +24,16 @@ struct ExpectedInstant {
   Eigen::Vector4d place = Eigen::Vector4d::Zero();  // position and velocity
 };
 
-// Expected readings at up to eight times. The samples are stored by reference.
-class ExpectedReadings {
- public:
-  // `sensitivity`: null if no derivatives are needed. `scalars`: those that were read.
-  ExpectedReadings(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples,
-                   const Observation& seen, const std::vector<int>& scalars);
-  ~ExpectedReadings();
-
-  ExpectedInstant at(int lane) const;
-  // Writes the derivatives with respect to each variable, except for scalars that are functions of
-  // attitude and gyro. No effect without a sensitivity.
-  void fill_slopes(int lane, const ExpectedInstant& instant, SlopeRows& slope) const;
-
- private:
-  struct Parts;
-
-  std::unique_ptr<Parts> parts_;
+// Expected readings at up to eight times.
+struct ExpectedReadings {
+  std::array<ExpectedInstant, Lanes::count> instant;
+  // Derivatives with respect to each variable, except for scalars that are functions of attitude
+  // and gyro.
+  std::array<SlopeRows, Lanes::count> slope;
 };
+// `sensitivity`: null if no derivatives are needed. `scalars`: those that were read.
+ExpectedReadings expected_readings(const Dynamics& dynamics, const Sensitivity* sensitivity,
+                                   const Samples& samples, const Observation& seen,
+                                   const std::vector<int>& scalars);
 
 }  // namespace photorque

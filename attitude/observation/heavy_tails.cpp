@@ -12,6 +12,23 @@ namespace photorque {
 
 namespace {
 
+// The deviations of one channel in one run, in order of time.
+struct Deviations {
+  std::vector<size_t> block;  // of the observation
+  std::vector<double> time_s;
+  std::vector<double> left;       // measured − predicted [rad or rad/s]
+  std::vector<double> root_rows;  // √ of the rows that were averaged into the block
+  std::vector<double> curve;      // smooth curve through the neighbours
+  // left − curve, scaled to one row and divided by the square root of the fraction of a reading's
+  // variance that remains about the curve. For white noise its standard deviation is that of the
+  // noise.
+  std::vector<double> size;
+
+  size_t count() const { return block.size(); }
+};
+
+// Number of readings in the window of the parabola about each reading, including it.
+constexpr size_t deviation_window = 15;
 constexpr size_t reach = deviation_window / 2;
 constexpr size_t lags = 5;
 
@@ -35,27 +52,7 @@ std::array<double, lags + 1> correlations_of_white_noise() {
   return all;
 }
 
-}  // namespace
-
-Deviations deviations(const Prediction& residuals, const Observation& seen, int channel) {
-  Deviations result;
-  for (size_t i = 0; i < residuals.off.size(); ++i) {
-    const double x = residuals.off[i][channel];
-    const double rows = seen.rows_of(i, channel);
-    // A residual of this size may be a whole turn at the next reading.
-    constexpr double elsewhere_rad = 0.5;
-    if (!std::isfinite(x) || !(rows > 0.0) || (channel < 3 && std::abs(x) > elsewhere_rad))
-      continue;
-    result.block.push_back(i);
-    result.time_s.push_back(seen.time_s[i]);
-    result.left.push_back(x);
-    result.root_rows.push_back(std::sqrt(rows));
-  }
-  if (result.count() < deviation_window) return {};
-  fit_smooth_curves(result, std::vector<double>(result.count(), 1.0));
-  return result;
-}
-
+// Fits the curves again, with one weight (> 0) for each reading.
 void fit_smooth_curves(Deviations& channel, const std::vector<double>& weight) {
   const size_t n = channel.count();
   channel.curve.resize(n);
@@ -84,6 +81,27 @@ void fit_smooth_curves(Deviations& channel, const std::vector<double>& weight) {
   }
 }
 
+// The deviations with equal weights; empty if there are fewer readings than a window.
+Deviations deviations(const Prediction& residuals, const Observation& seen, int channel) {
+  Deviations result;
+  for (size_t i = 0; i < residuals.off.size(); ++i) {
+    const double x = residuals.off[i][channel];
+    const double rows = seen.rows_of(i, channel);
+    // A residual of this size may be a whole turn at the next reading.
+    constexpr double elsewhere_rad = 0.5;
+    if (!std::isfinite(x) || !(rows > 0.0) || (channel < 3 && std::abs(x) > elsewhere_rad))
+      continue;
+    result.block.push_back(i);
+    result.time_s.push_back(seen.time_s[i]);
+    result.left.push_back(x);
+    result.root_rows.push_back(std::sqrt(rows));
+  }
+  if (result.count() < deviation_window) return {};
+  fit_smooth_curves(result, std::vector<double>(result.count(), 1.0));
+  return result;
+}
+
+// Standard deviation from the median of all sizes, which outliers do not affect. 0: no reading.
 double robust_level(const std::vector<Deviations>& runs) {
   std::vector<double> sizes;
   for (const Deviations& run : runs) {
@@ -93,6 +111,8 @@ double robust_level(const std::vector<Deviations>& runs) {
   return upper_median(std::move(sizes)) / normal_median;
 }
 
+// Whether the correlation of neighbouring deviations is that of white noise about its fitted curve:
+// the residual is then noise, not motion. Sizes are clipped at three times `level`.
 bool are_independent(const std::vector<Deviations>& runs, double level) {
   static const std::array<double, lags + 1> white = correlations_of_white_noise();
   std::array<double, lags + 1> product{};
@@ -114,8 +134,6 @@ bool are_independent(const std::vector<Deviations>& runs, double level) {
   }
   return true;
 }
-
-namespace {
 
 std::vector<Deviations> of_all(const std::vector<Prediction>& residuals,
                                const std::vector<Observation>& runs, int channel) {
@@ -271,7 +289,7 @@ std::optional<HeavyTail> heavy_tail(std::vector<Deviations> runs, const Threshol
 // Adds `by` [rad or rad/s] to a reading.
 void move(Observation& seen, size_t block, int channel, double by) {
   if (channel >= 3) {
-    seen.gyro_rad_s[block][channel - 3] += by;
+    seen.value_of(block, channel) += by;
     return;
   }
   seen.attitude[block] =
@@ -352,10 +370,7 @@ int64_t drop_bursts(const std::vector<Prediction>& residuals, const Thresholds::
       for (size_t i = 0; i < all[run].count(); ++i) {
         if (in_burst[run][i] == 0) continue;
         ++dropped;
-        const size_t block = all[run].block[i];
-        // The components of an attitude are dropped together.
-        if (channel < 3) runs[run].attitude_rows[block] = 0.0;
-        if (channel >= 3) runs[run].gyro_rows[block][channel - 3] = 0.0;
+        runs[run].rows_in(all[run].block[i], channel) = 0.0;
       }
     }
   }

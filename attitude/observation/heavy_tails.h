@@ -11,37 +11,6 @@
 
 namespace photorque {
 
-// The deviations of one channel in one run, in order of time.
-struct Deviations {
-  std::vector<size_t> block;  // of the observation
-  std::vector<double> time_s;
-  std::vector<double> left;       // measured − predicted [rad or rad/s]
-  std::vector<double> root_rows;  // √ of the rows that were averaged into the block
-  std::vector<double> curve;      // smooth curve through the neighbours
-  // left − curve, scaled to one row and divided by the square root of the fraction of a reading's
-  // variance that remains about the curve. For white noise its standard deviation is that of the
-  // noise.
-  std::vector<double> size;
-
-  size_t count() const { return block.size(); }
-};
-
-// Number of readings in the window of the parabola about each reading, including it.
-constexpr size_t deviation_window = 15;
-
-// The deviations with equal weights; empty if there are fewer readings than a window.
-Deviations deviations(const Prediction& residuals, const Observation& seen, int channel);
-
-// Fits the curves again, with one weight (> 0) for each reading.
-void fit_smooth_curves(Deviations& channel, const std::vector<double>& weight);
-
-// Standard deviation from the median of all sizes, which outliers do not affect. 0: no reading.
-double robust_level(const std::vector<Deviations>& runs);
-
-// Whether the correlation of neighbouring deviations is that of white noise about its fitted curve:
-// the residual is then noise, not motion. Sizes are clipped at three times `level`.
-bool are_independent(const std::vector<Deviations>& runs, double level);
-
 // Student's t distribution of a channel's errors.
 struct HeavyTail {
   double degrees = 0.0;        // of freedom

@@ -12,11 +12,6 @@ namespace photorque {
 
 namespace {
 
-// Least noise of a reading over the rms of the readings, about the rounding to 20 bits. A lower
-// one, of a simulation without noise, is the error of an integrator; differences of log evidence
-// would be lost in double precision.
-constexpr double finest = 1e-6;
-
 struct ReadingAt {
   double time_s, value;
 };
@@ -166,7 +161,7 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
   }
   const double least = std::max(level, rounding);
   if (!(least > 0.0)) return std::nullopt;
-  return std::max(least, finest * std::sqrt(squares / readings));
+  return least;
 }
 
 namespace {
@@ -248,6 +243,11 @@ void add_powers(const Differences& d, std::vector<double>& powers) {
     powers.push_back(std::norm(sum) / (weight * passed));
   }
 }
+
+// Least noise of a reading over the rms of the readings, about the rounding to 20 bits. A lower
+// one, of a simulation without noise, is the error of an integrator; differences of log evidence
+// would be lost in double precision.
+constexpr double finest = 1e-6;
 
 }  // namespace
 

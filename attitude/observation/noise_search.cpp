@@ -30,7 +30,7 @@ class NoiseSearch {
     result_.is_open = std::any_of(left_.begin(), left_.end(),
                                   [](const KinematicRun& run) { return run.about_readings; });
     if (result_.is_open) return result_;
-    gyro_.gyro_rad_s = stated_.gyro_rad_s;
+    gyro_.gyro_rad_s = stated_.levels(3);
     for (int k = 0; k < 3; ++k) find_gyro_level(k);
     if (has_gyro_) {
       // First with a roughness that allows any torque.
@@ -85,14 +85,12 @@ class NoiseSearch {
   // tried in addition to that of the camera, and instead of it.
   void find_gyro_colour() {
     double now = 0.0;
-    for (const CameraNoise& axis : axes_) now += axis.value;
-    std::array<AngleNoise, 3> camera_alone;
+    std::array<AngleNoise, 3> as_found, camera_alone;
     for (size_t k = 0; k < 3; ++k) {
-      camera_alone[k] = axes_[k].axis;
+      now += axes_[k].value;
+      as_found[k] = camera_alone[k] = axes_[k].axis;
       camera_alone[k].camera = stated_.of(static_cast<int>(k));
     }
-    std::array<AngleNoise, 3> as_found;
-    for (size_t k = 0; k < 3; ++k) as_found[k] = axes_[k].axis;
     const double wanted = now - limits_.min_colour_gain;
     Minimum best{{}, wanted};
     const std::array<AngleNoise, 3>* beside = nullptr;
@@ -145,7 +143,7 @@ class NoiseSearch {
     double sum = 0.0;
     for (size_t k = 0; k < 3; ++k) {
       AngleNoise noise = cameras[k];
-      noise.gyro_rad_s = std::exp(x[0]) * stated_.gyro_rad_s;
+      noise.gyro_rad_s = std::exp(x[0]) * stated_.levels(3);
       noise.gyro_coloured = coloured_fraction(x);
       noise.gyro_time_s = std::exp(x[1]);
       noise.roughness *= std::exp(x[2]);
@@ -188,7 +186,7 @@ class NoiseSearch {
   void use_gyro(const Minimum& best) {
     const double factor = std::exp(best.at[0]);
     const bool off = is_off(best.at[0], gyro_log_sigma, limits_);
-    gyro_.gyro_rad_s = (off ? factor : 1.0) * stated_.gyro_rad_s;
+    gyro_.gyro_rad_s = (off ? factor : 1.0) * stated_.levels(3);
     gyro_.gyro_coloured = coloured_fraction(best.at);
     gyro_.gyro_time_s = std::exp(best.at[1]);
     for (int k = 0; k < 3; ++k) {

@@ -26,27 +26,6 @@ void unwind(std::vector<double>& angle_rad) {
 
 }  // namespace
 
-ChannelNoise NoiseLevels::of(int channel) const {
-  if (channel >= vector_channels) {
-    return scalar[static_cast<size_t>(channel - vector_channels)];
-  }
-  const int k = channel % 3;
-  if (channel < 3) return {camera_rad[k], camera_colour.fraction[k], camera_colour.time_s[k]};
-  return {gyro_rad_s[k], gyro_colour.fraction[k], gyro_colour.time_s[k]};
-}
-
-void NoiseLevels::set(int channel, const ChannelNoise& noise) {
-  if (channel >= vector_channels) {
-    scalar[static_cast<size_t>(channel - vector_channels)] = noise;
-    return;
-  }
-  const int k = channel % 3;
-  (channel < 3 ? camera_rad : gyro_rad_s)[k] = noise.level;
-  Colour& colour = channel < 3 ? camera_colour : gyro_colour;
-  colour.fraction[k] = noise.coloured;
-  colour.time_s[k] = noise.time_s;
-}
-
 double NoiseProfile::at(double time_s) const {
   if (factor.empty()) return 1.0;
   const double part = (time_s - begin_s) / part_s;
@@ -54,35 +33,62 @@ double NoiseProfile::at(double time_s) const {
       std::clamp(part, 0.0, static_cast<double>(factor.size()) - 1.0))];
 }
 
+namespace {
+
+// The stated standard deviation of a channel; zero if none is stated.
+double stated_level(const Sensors& sensors, int channel) {
+  switch (channel_traits(channel).measures) {
+    case Measures::angle:
+      return sensors.camera ? sensors.camera->noise_rad.minCoeff() : 0.0;
+    case Measures::rate:
+      return sensors.gyro ? sensors.gyro->noise_rad_s : 0.0;
+    case Measures::force:
+      return sensors.accelerometer ? sensors.accelerometer->noise_m_s2 : 0.0;
+    case Measures::length:
+      return sensors.position ? sensors.position->noise_m : 0.0;
+    case Measures::speed:
+      return sensors.position ? sensors.position->noise_m_s : 0.0;
+    case Measures::field:
+      return sensors.magnetometer ? sensors.magnetometer->noise_T : 0.0;
+  }
+  return 0.0;
+}
+
+// The usual standard deviation of a scalar, beside the levels of camera and gyro.
+double usual_level(Measures measures, const NoiseLevels& noise) {
+  switch (measures) {
+    case Measures::angle:  // as accurate as the camera about the vertical
+      return noise.of(2).level;
+    case Measures::rate:  // a magnitude is as accurate as one of its axes
+      return noise.of(5).level;
+    case Measures::force:
+      return 0.01;  // m/s²
+    case Measures::length:
+      return 1e-3;  // m
+    case Measures::speed:
+      return 1e-2;  // m/s
+    case Measures::field:
+      return 1e-7;  // T
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+bool states_noise(const Sensors& sensors, int channel) {
+  return stated_level(sensors, channel) > 0.0;
+}
+
 NoiseLevels noise_levels(const Sensors& sensors) {
   NoiseLevels noise;
-  if (states_camera_noise(sensors)) noise.camera_rad = sensors.camera->noise_rad;
-  if (states_gyro_noise(sensors)) noise.gyro_rad_s = Vec3::Constant(sensors.gyro->noise_rad_s);
-  for (int s = 0; s < scalar_count; ++s) {
-    constexpr double usual_force_m_s2 = 0.01, usual_field_T = 1e-7, usual_m = 1e-3,
-                     usual_m_s = 1e-2;
-    double& level = noise.scalar[static_cast<size_t>(s)].level;
-    const bool is_stated = states_noise(sensors, vector_channels + s);
-    switch (channel_traits(vector_channels + s).measures) {
-      case Measures::angle:  // as accurate as the camera about the vertical
-        level = noise.camera_rad[2];
-        break;
-      case Measures::rate:  // a magnitude is as accurate as one of its axes
-        level = noise.gyro_rad_s[2];
-        break;
-      case Measures::force:
-        level = is_stated ? sensors.accelerometer->noise_m_s2 : usual_force_m_s2;
-        break;
-      case Measures::length:
-        level = is_stated ? sensors.position->noise_m : usual_m;
-        break;
-      case Measures::speed:
-        level = is_stated ? sensors.position->noise_m_s : usual_m_s;
-        break;
-      case Measures::field:
-        level = is_stated ? sensors.magnetometer->noise_T : usual_field_T;
-        break;
-    }
+  if (states_noise(sensors, 0)) noise.set_levels(0, sensors.camera->noise_rad);
+  if (states_noise(sensors, 3)) noise.set_levels(3, Vec3::Constant(sensors.gyro->noise_rad_s));
+  for (int channel = vector_channels; channel < channel_count; ++channel) {
+    const Measures measures = channel_traits(channel).measures;
+    const bool is_of_vector = measures == Measures::angle || measures == Measures::rate;
+    noise.set(channel,
+              {states_noise(sensors, channel) && !is_of_vector ? stated_level(sensors, channel)
+                                                               : usual_level(measures, noise)});
   }
   return noise;
 }
@@ -95,32 +101,6 @@ FieldInstruments field_instruments(const Sensors& sensors) {
   }
   if (sensors.magnetometer) fields.magnetometer_bias_T = sensors.magnetometer->bias_T;
   return fields;
-}
-
-bool states_noise(const Sensors& sensors, int channel) {
-  switch (channel_traits(channel).measures) {
-    case Measures::angle:
-      return states_camera_noise(sensors);
-    case Measures::rate:
-      return states_gyro_noise(sensors);
-    case Measures::force:
-      return sensors.accelerometer && sensors.accelerometer->noise_m_s2 > 0.0;
-    case Measures::length:
-      return sensors.position && sensors.position->noise_m > 0.0;
-    case Measures::speed:
-      return sensors.position && sensors.position->noise_m_s > 0.0;
-    case Measures::field:
-      return sensors.magnetometer && sensors.magnetometer->noise_T > 0.0;
-  }
-  return false;
-}
-
-bool states_camera_noise(const Sensors& sensors) {
-  return sensors.camera && sensors.camera->noise_rad.minCoeff() > 0.0;
-}
-
-bool states_gyro_noise(const Sensors& sensors) {
-  return sensors.gyro && sensors.gyro->noise_rad_s > 0.0;
 }
 
 bool Observation::has_scalars() const {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "attitude/model/platform.h"
@@ -23,17 +24,22 @@ struct ChannelNoise {
 };
 
 struct NoiseLevels {
-  // One standard deviation of one reading.
-  Vec3 camera_rad = Vec3(37, 37, 12) * arcsecond_rad;  // about lab x, y, z
-  Vec3 gyro_rad_s = Vec3::Constant(2e-4);              // body axes
-  struct Colour {
-    Vec3 fraction = Vec3::Zero(), time_s = Vec3::Zero();
-  } camera_colour, gyro_colour;
-  std::array<ChannelNoise, scalar_count> scalar = {};  // in SI
+  // Noise of one reading, by channel (recordings/columns.h), SI.
+  std::array<ChannelNoise, channel_count> channel = {};
 
-  // Noise of a channel, in the order of recordings/columns.h.
-  ChannelNoise of(int channel) const;
-  void set(int channel, const ChannelNoise& noise);
+  NoiseLevels() {
+    set_levels(0, Vec3(37, 37, 12) * arcsecond_rad);  // of the camera about lab x, y, z
+    set_levels(3, Vec3::Constant(2e-4));              // of the gyro, body axes
+  }
+  const ChannelNoise& of(int which) const { return channel[static_cast<size_t>(which)]; }
+  void set(int which, const ChannelNoise& noise) { channel[static_cast<size_t>(which)] = noise; }
+  // The standard deviations of three channels from `first` on.
+  Vec3 levels(int first) const {
+    return {of(first).level, of(first + 1).level, of(first + 2).level};
+  }
+  void set_levels(int first, const Vec3& level) {
+    for (int k = 0; k < 3; ++k) channel[static_cast<size_t>(first + k)].level = level[k];
+  }
 };
 
 // Factors of the noise in equal parts of a run, for a model that fits some parts worse than others.
@@ -47,9 +53,6 @@ struct NoiseProfile {
 
 // Noise levels of the instruments; without stated ones, the defaults above.
 NoiseLevels noise_levels(const Sensors& sensors);
-// Whether the camera or the gyro states its noise.
-bool states_camera_noise(const Sensors& sensors);
-bool states_gyro_noise(const Sensors& sensors);
 // Whether the instruments state the noise of a channel.
 bool states_noise(const Sensors& sensors, int channel);
 
@@ -113,15 +116,28 @@ struct Observation {
     if (channel >= 3) return gyro_rows[block][channel - 3];
     return sees_axis[static_cast<size_t>(channel)] ? attitude_rows[block] : 0.0;
   }
+  // That number to be changed; the components of an attitude share it.
+  double& rows_in(size_t block, int channel) {
+    if (channel < 3) return attitude_rows[block];
+    return channel < vector_channels
+               ? gyro_rows[block][channel - 3]
+               : scalar[static_cast<size_t>(channel - vector_channels)].rows[block];
+  }
   // The mean of the readings of a rate or scalar (channel 3 or above) in a block.
-  double value_of(size_t block, int channel) const {
+  const double& value_of(size_t block, int channel) const {
     return channel < vector_channels
                ? gyro_rad_s[block][channel - 3]
                : scalar[static_cast<size_t>(channel - vector_channels)].value[block];
   }
+  double& value_of(size_t block, int channel) {
+    return const_cast<double&>(std::as_const(*this).value_of(block, channel));
+  }
   bool sees_attitude() const { return sees_axis[0] && sees_axis[1] && sees_axis[2]; }
   bool has_some_attitude() const { return sees_axis[0] || sees_axis[1] || sees_axis[2]; }
   bool has(Scalar s) const { return !scalar[static_cast<size_t>(s)].rows.empty(); }
+  bool has_channel(int channel) const {
+    return channel < vector_channels || has(static_cast<Scalar>(channel - vector_channels));
+  }
   bool has_scalars() const;
   // Whether some measured quantity depends on the attitude of this platform.
   bool measures_attitude(const Platform& platform) const;

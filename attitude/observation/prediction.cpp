@@ -13,7 +13,10 @@
 namespace photorque {
 
 MeanOfCorrelated mean_of_correlated(double n, double steps) {
-  if (n <= 1.0 || !(steps > 0.0)) return {};  // one reading, or all of them equal
+  if (n < 1.0) return {1.0 / n};
+  constexpr double longest_means = 20.0;
+  steps = std::min(steps, longest_means / n);
+  if (n == 1.0 || !(steps > 0.0)) return {};  // one reading, or all of them equal
   const double rho = std::exp(-steps), left = -std::expm1(-steps);
   const double variance =
       ((1.0 + rho) / left + 2.0 * rho * std::expm1(-n * steps) / (n * left * left)) / n;
@@ -52,15 +55,8 @@ Whitening::Whitening(const Observation& seen, int channel, Eigen::Index width)
 }
 
 Whitening::Gain Whitening::gain(double time_s, double rows) {
-  // For means over more correlation times, `reach` is too large for the precision of a double. The
-  // correlation of neighbours is below 5 % there.
-  constexpr double longest_means = 20.0;
-  const double steps = std::min(interval_s_ / time_s_, longest_means / std::max(1.0, rows));
-  const MeanOfCorrelated mean = mean_of_correlated(rows, steps);
-  // A reading with a weight below one has more independent noise.
-  const double own = white_variance_ / rows +
-                     (rows < 1.0 ? (1.0 / rows - 1.0) * coloured_variance_ : 0.0) +
-                     coloured_variance_ * mean.variance;
+  const MeanOfCorrelated mean = mean_of_correlated(rows, interval_s_ / time_s_);
+  const double own = white_variance_ / rows + coloured_variance_ * mean.variance;
   const double scale = 1.0 / mean.reach;
   // Variance that only this block has. It is negative for means, whose correlation is larger than
   // that of the process at their centres.
@@ -135,34 +131,28 @@ class Comparison {
         slope_(Eigen::Index{channel_count}, static_cast<Eigen::Index>(variables)),
         keep_(keep) {
     slope_.setZero();
-    instant_slope_ = slope_;
     for (int channel = 0; channel < channel_count; ++channel) {
       whitening_.emplace_back(seen, channel, slope_.cols() + 1);
-      const bool is_scalar = channel >= vector_channels;
-      if (is_scalar && seen.has(static_cast<Scalar>(channel - vector_channels))) {
+      if (channel >= vector_channels && seen.has_channel(channel)) {
         scalars_.push_back(channel - vector_channels);
       }
     }
   }
 
   void add(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples) {
-    const ExpectedReadings expected(dynamics, sensitivity, samples, seen_, scalars_);
+    ExpectedReadings expected = expected_readings(dynamics, sensitivity, samples, seen_, scalars_);
     // Stops early, because the rest would not improve the decision.
     if (chi2_ > max_chi2_) throw NumericalError("the prediction has diverged from the readings");
     for (int lane = 0; lane < samples.count; ++lane) {
       const size_t instant = samples.first + static_cast<size_t>(lane),
                    block = instant / instants_.per_block();
-      moments_.push_back(expected.at(lane));
+      moments_.push_back(std::move(expected.instant[static_cast<size_t>(lane)]));
       if (!(moments_.back().state.rate_body_rad_s.norm() < max_rate_rad_s_)) {
         throw NumericalError("the motion runs away");
       }
-      if (instants_.per_block() == 1) {
-        expected.fill_slopes(lane, moments_.back(), slope_);
-      } else {
-        expected.fill_slopes(lane, moments_.back(), instant_slope_);
-        if (moments_.size() == 1) slope_.setZero();
-        slope_ += instants_.weight(block, moments_.size() - 1) * instant_slope_;
-      }
+      SlopeRows& slope = expected.slope[static_cast<size_t>(lane)];
+      if (sensitivity != nullptr && moments_.size() == 1) slope_.setZero();
+      if (sensitivity != nullptr) slope_ += instants_.weight(block, moments_.size() - 1) * slope;
       if (moments_.size() < instants_.per_block()) continue;
       add_block(block, mean_of(moments_, instants_, block, seen_.time_s[block]));
       moments_.clear();
@@ -248,7 +238,7 @@ class Comparison {
   double off_before_rad_ = 0.0;  // about the only axis
   double max_chi2_, max_rate_rad_s_, chi2_ = 0.0;
   inference::SumsOfRows sums_;
-  SlopeRows slope_, instant_slope_;
+  SlopeRows slope_;
   std::vector<ExpectedInstant> moments_;  // of the present, incomplete block
   std::vector<int> scalars_;              // that were read
   std::vector<Whitening> whitening_;      // of each channel

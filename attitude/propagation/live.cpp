@@ -3,6 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "core/snapshot.h"
+
 namespace photorque {
 
 Truth truth_at(const PlatformState& state, const Quat& seen, const Dynamics::Instants& now,
@@ -19,28 +21,18 @@ Truth truth_at(const PlatformState& state, const Quat& seen, const Dynamics::Ins
           .array_power_W = now.array_power_W[lane]};
 }
 
-Quat attitude_before(const PlatformState& state, double before_s) {
-  return state.lab_from_body * turn_by(-before_s * state.rate_body_rad_s);
-}
-
-LiveInstruments::LiveInstruments(const Dynamics& dynamics, const PlatformState& initial,
-                                 double rate_Hz, double camera_delay_s, const Sensors& sensors,
-                                 uint64_t seed)
-    : dynamics_(dynamics),
-      initial_(to_state(initial.time_s, to_vector(initial))),
-      rate_Hz_(rate_Hz),
-      delay_s_(camera_delay_s),
-      recorder_(sensors, seed) {
+LateCamera::LateCamera(const PlatformState& initial, double rate_Hz, double delay_s)
+    : initial_(to_state(initial.time_s, to_vector(initial))), rate_Hz_(rate_Hz), delay_s_(delay_s) {
   while (delay_s_ > 0.0 && tick_s(next_look_) - delay_s_ <= initial_.time_s) ++next_look_;
 }
 
-double LiveInstruments::tick_s(size_t index) const {
+double LateCamera::tick_s(size_t index) const {
   return initial_.time_s + static_cast<double>(index) / rate_Hz_;
 }
 
-void LiveInstruments::follow(const Propagator& motion) {
+void LateCamera::follow(const Propagator& motion) {
   if (!(delay_s_ > 0.0)) return;
-  std::vector<Lanes> y(static_cast<size_t>(dynamics_.size()));
+  std::vector<Lanes> y(static_cast<size_t>(motion.dynamics().size()));
   for (; tick_s(next_look_) - delay_s_ < motion.step_end_s(); ++next_look_) {
     const double look_s = tick_s(next_look_) - delay_s_;
     motion.dense(look_s, y.data());
@@ -48,13 +40,20 @@ void LiveInstruments::follow(const Propagator& motion) {
   }
 }
 
-Quat LiveInstruments::seen(const PlatformState& now) {
+Quat LateCamera::seen(const PlatformState& now) {
   if (!(delay_s_ > 0.0)) return now.lab_from_body;
-  const double wanted_s = now.time_s - delay_s_;
-  if (wanted_s <= initial_.time_s) return attitude_before(initial_, initial_.time_s - wanted_s);
-  Quat first = on_the_way_.front();
+  const double before_s = initial_.time_s - (now.time_s - delay_s_);
+  if (before_s >= 0.0) {
+    return initial_.lab_from_body * turn_by(-before_s * initial_.rate_body_rad_s);
+  }
+  const Quat first = on_the_way_.front();
   on_the_way_.pop_front();
   return first;
+}
+
+void LateCamera::keep(Snapshot& snapshot) {
+  snapshot(next_look_);
+  snapshot.each(on_the_way_, [&](Quat& seen) { snapshot(seen); });
 }
 
 LiveRow LiveInstruments::read(double time_s, std::span<const double> y, const ZeroOrderHold& held,
@@ -68,7 +67,7 @@ LiveRow LiveInstruments::read(double time_s, std::span<const double> y, const Ze
   row.time_s = time_s;
   row.truth = to_state(time_s, y);
   row.command_body_N_m = lane_of(now.command_body_N_m, 0);
-  Truth truth = truth_at(row.truth, seen(row.truth), now, 0);
+  Truth truth = truth_at(row.truth, camera_.seen(row.truth), now, 0);
   if (power) {
     truth.battery_current_A = power->battery_current_A;
     truth.array_power_W = power->array_power_W;

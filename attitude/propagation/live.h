@@ -38,33 +38,46 @@ using LiveCommander = std::function<ZeroOrderHold(const LiveRow& row)>;
 Truth truth_at(const PlatformState& state, const Quat& seen, const Dynamics::Instants& now,
                int lane);
 
-// Attitude `before_s` seconds before `state`, if the body rate is constant.
-Quat attitude_before(const PlatformState& state, double before_s);
+// A camera that reports at every tick the attitude of `delay_s` before. Before the start of the run
+// the body rate is constant.
+class LateCamera {
+ public:
+  LateCamera(const PlatformState& initial, double rate_Hz, double delay_s);
+
+  double tick_s(size_t index) const;
+  // Call after every integration step: stores the attitudes that the camera sees within it.
+  void follow(const Propagator& motion);
+  // The attitude that is reported at the next tick, at which the state is `now`.
+  Quat seen(const PlatformState& now);
+
+  void keep(Snapshot& snapshot);
+
+ private:
+  PlatformState initial_;
+  double rate_Hz_, delay_s_;
+  size_t next_look_ = 0;  // tick of the next image
+  std::deque<Quat> on_the_way_;
+};
 
 // Reads the instruments at the ticks of a run in progress. `dynamics` must outlive it.
 class LiveInstruments {
  public:
-  LiveInstruments(const Dynamics& dynamics, const PlatformState& initial, double rate_Hz,
-                  double camera_delay_s, const Sensors& sensors, uint64_t seed);
+  LiveInstruments(const Dynamics& dynamics, LateCamera camera, const Sensors& sensors,
+                  uint64_t seed)
+      : dynamics_(dynamics), camera_(std::move(camera)), recorder_(sensors, seed) {}
 
-  // Call after every integration step: stores the attitudes that the camera sees within it.
-  void follow(const Propagator& motion);
+  // Call after every integration step.
+  void follow(const Propagator& motion) { camera_.follow(motion); }
   // Reads the instruments at the ticks, in order. `held` is the command before the tick. `power` is
   // the state of a power system that is simulated together with the motion.
   LiveRow read(double time_s, std::span<const double> y, const ZeroOrderHold& held,
                const std::optional<PowerState>& power);
 
  private:
-  double tick_s(size_t index) const;
-  Quat seen(const PlatformState& now);
-
   const Dynamics& dynamics_;
-  PlatformState initial_;
-  double rate_Hz_, delay_s_;
+  LateCamera camera_;
   Recorder recorder_;
-  size_t next_ = 0;       // next tick to be read
-  size_t next_look_ = 0;  // tick of the next camera image
-  std::deque<Quat> on_the_way_;
+  size_t next_ = 0;  // next tick to be read
 };
 
 }  // namespace photorque

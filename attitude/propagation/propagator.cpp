@@ -47,7 +47,7 @@ EventFunction tilt_event(double limit_rad) {
 }
 
 EventFunction battery_empty_event(double capacity_C) {
-  return {"battery_empty", true, true,
+  return {"battery_empty", false, true,
           [capacity_C](const Lanes&, const Lanes* y) { return y[component::charge] - capacity_C; }};
 }
 
@@ -123,11 +123,10 @@ void Propagator::collect_jumps(double from_s) {
       int variable = -1;
       if (sensitivity_ && s.parameter >= 0) {
         const std::vector<Variable>& all = sensitivity_->variables();
-        for (size_t v = 0; v < all.size(); ++v) {
-          if (all[v].initial < 0 && all[v].disturbance == d && all[v].parameter == s.parameter) {
-            variable = static_cast<int>(v);
-          }
-        }
+        const auto at = std::ranges::find_if(all, [&](const Variable& v) {
+          return v.initial < 0 && v.disturbance == d && v.parameter == s.parameter;
+        });
+        if (at != all.end()) variable = static_cast<int>(at - all.begin());
       }
       jumps_.push_back({s.time_s, variable});
     }

@@ -4,8 +4,7 @@
 // end exactly at every jump of a command or a law. Dense output is available within each step, and
 // events are located on it. Derivatives are computed on request. After 1e5 s of a free asymmetric
 // body the attitude error is below 1e-9 rad; energy and momentum are conserved to 1e-13
-// (tests/attitude/propagator_test.cpp; attitude_benchmark compares methods). Equal inputs give
-// bitwise equal results.
+// (tests/attitude/propagator_test.cpp). Equal inputs give bitwise equal results.
 #pragma once
 
 #include <functional>
@@ -54,7 +53,7 @@ struct Event {
 
 // Event "tilt_stop", which ends the run: the tilt of body z from lab z reaches `limit_rad`.
 EventFunction tilt_event(double limit_rad);
-// Event "battery_empty", which ends the run: the charge drawn reaches `capacity_C`.
+// Event "battery_empty": the charge drawn reaches `capacity_C`. The run continues without power.
 EventFunction battery_empty_event(double capacity_C);
 // Events "eclipse_begins" and "eclipse_ends": the illumination falls below or rises above one half.
 // `dynamics` must outlive the function.

@@ -12,19 +12,21 @@
 namespace photorque {
 namespace {
 
+bool has_eclipses(const Dynamics& dynamics) {
+  return std::ranges::any_of(dynamics.model().disturbances, [](const Disturbance& d) {
+    const DisturbanceKind* kind = find_kind(d.kind);
+    return kind != nullptr && kind->has_eclipses;
+  });
+}
+
 std::vector<EventFunction> events_of(const Dynamics& dynamics, bool has_power_system) {
   const Platform& platform = dynamics.model().platform;
   std::vector<EventFunction> events;
   if (platform.tilt_limit_rad) events.push_back(tilt_event(*platform.tilt_limit_rad));
   if (platform.battery_capacity_C && !has_power_system) {
     events.push_back(battery_empty_event(*platform.battery_capacity_C));
-    // The run continues without power when the battery is empty.
-    events.back().ends_run = false;
   }
-  for (const Disturbance& d : dynamics.model().disturbances) {
-    const DisturbanceKind* kind = find_kind(d.kind);
-    if (kind != nullptr && kind->has_eclipses) events.push_back(eclipse_event(dynamics));
-  }
+  if (has_eclipses(dynamics)) events.push_back(eclipse_event(dynamics));
   return events;
 }
 
@@ -34,37 +36,16 @@ std::vector<EventFunction> events_of(const Dynamics& dynamics, bool has_power_sy
 PropagationOptions options_of(const PropagationRun& run, const Dynamics& dynamics) {
   constexpr double steps_per_orbit = 400.0;
   PropagationOptions options = run.options;
-  const bool has_eclipses = std::ranges::any_of(run.model.disturbances, [](const Disturbance& d) {
-    const DisturbanceKind* kind = find_kind(d.kind);
-    return kind != nullptr && kind->has_eclipses;
-  });
   const double mean_motion_rad_s = std::sqrt(dynamics.at(run.initial).gravity_gradient_1_s2[0]);
-  if (has_eclipses && mean_motion_rad_s > 0.0) {
+  if (has_eclipses(dynamics) && mean_motion_rad_s > 0.0) {
     options.max_step_s =
         std::min(options.max_step_s, 2.0 * pi / mean_motion_rad_s / steps_per_orbit);
   }
   return options;
 }
 
-// The times of the rows of a recording.
-struct RowTimes {
-  const PropagationRun& run;
-  double time_s(size_t row) const {
-    return run.initial.time_s + static_cast<double>(row) / run.output_rate_Hz;
-  }
-  size_t rows() const {
-    return static_cast<size_t>(std::floor(run.duration_s * run.output_rate_Hz + 1e-6)) + 1;
-  }
-};
-
-// Reads the instruments at a tick and calls the commander of the run.
-Propagator::Commander commander_at_ticks(const PropagationRun& run, const Propagator& propagator,
-                                         LiveInstruments& instruments, const PowerHistory* beside) {
-  return [&run, &propagator, &instruments, beside](double time_s, std::span<const double> y) {
-    std::optional<PowerState> power;
-    if (beside != nullptr) power = beside->at(std::min(time_s, beside->known_until_s()));
-    return run.commander(instruments.read(time_s, y, propagator.held(), power));
-  };
+size_t rows_of(const PropagationRun& run) {
+  return static_cast<size_t>(std::floor(run.duration_s * run.output_rate_Hz + 1e-6)) + 1;
 }
 
 // Number of recorded rows per row of the history. The history, which always contains the last row,
@@ -76,32 +57,14 @@ size_t thinning(size_t rows, size_t history_rows) {
 
 }  // namespace
 
-std::vector<RecordedRun::Look> RecordedRun::looks(const PropagationRun& run, double delay_s) {
-  const RowTimes rows{run};
-  std::vector<Look> all;
-  size_t next_seen = 0;
-  for (size_t row = 0; row < rows.rows(); ++row) {
-    const double time_s = rows.time_s(row);
-    for (; delay_s > 0.0 && next_seen < rows.rows(); ++next_seen) {
-      const double wanted_s = rows.time_s(next_seen) - delay_s;
-      const double seen_s = std::max(run.initial.time_s, wanted_s);
-      if (seen_s > time_s) break;
-      all.push_back({seen_s, false, seen_s - wanted_s});
-    }
-    all.push_back({time_s, true});
-  }
-  return all;
-}
-
 RecordedRun::RecordedRun(const PropagationRun& run, std::function<void(double)> progress,
                          const PowerHistory* beside)
     : beside_(beside),
       progress_(std::move(progress)),
       dynamics_(run.model),
       given_(run.model.schedule),
-      delay_s_(dynamics_.at(run.initial).camera_delay_s[0]),
-      times_(looks(run, delay_s_)),
-      rows_(RowTimes{run}.rows()),
+      camera_(run.initial, run.output_rate_Hz, dynamics_.at(run.initial).camera_delay_s[0]),
+      rows_(rows_of(run)),
       thinning_(thinning(rows_, run.history_rows)),
       recorder_(run.sensors, run.seed),
       history_(dynamics_),
@@ -109,15 +72,21 @@ RecordedRun::RecordedRun(const PropagationRun& run, std::function<void(double)> 
       propagator_(dynamics_, run.initial, run.initial.time_s + run.duration_s,
                   options_of(run, dynamics_), {}, events_of(dynamics_, beside != nullptr)),
       sampler_(
-          propagator_, times_.size(), [this](size_t i) { return times_[i].time_s; },
+          propagator_, rows_, [this](size_t row) { return camera_.tick_s(row); },
           [this](const Samples& samples) { take_in(samples); }) {
   if (!run.commander) return;
-  instruments_.emplace(dynamics_, run.initial, run.output_rate_Hz, delay_s_, run.sensors, run.seed);
-  propagator_.follow_commander(commander_at_ticks(run, propagator_, *instruments_, beside));
+  instruments_.emplace(dynamics_, camera_, run.sensors, run.seed);
+  // Reads the instruments at a tick and calls the commander of the run.
+  propagator_.follow_commander([this, &run](double time_s, std::span<const double> y) {
+    std::optional<PowerState> power;
+    if (beside_ != nullptr) power = beside_->at(std::min(time_s, beside_->known_until_s()));
+    return run.commander(instruments_->read(time_s, y, propagator_.held(), power));
+  });
 }
 
 void RecordedRun::record() {
   if (instruments_) instruments_->follow(propagator_);
+  camera_.follow(propagator_);
   excursion_.follow(propagator_);
   hand_on();
   sampler_.follow();
@@ -126,15 +95,13 @@ void RecordedRun::record() {
 void RecordedRun::keep(Snapshot& snapshot) {
   const auto components = static_cast<size_t>(dynamics_.size());
   snapshot.expect(components);
-  snapshot(propagator_, sampler_, recorder_, history_, excursion_);
+  snapshot(propagator_, sampler_, camera_, recorder_, history_, excursion_);
   snapshot.each(states_, [&](PlatformState& state) {
     snapshot(state.time_s, state.lab_from_body, state.rate_body_rad_s, state.charge_drawn_C);
     state.extra.resize(components - component::extra);
     snapshot.fixed(state.extra);
   });
-  snapshot.each(on_the_way_, [&](Quat& seen) { snapshot(seen); });
-  snapshot.each(waiting_,
-                [&](Samples& samples) { samples.keep(snapshot, components, times_.size()); });
+  snapshot.each(waiting_, [&](Samples& samples) { samples.keep(snapshot, components, rows_); });
 }
 
 // With a power system, states are recorded when its history extends to their times.
@@ -171,25 +138,17 @@ PlatformState RecordedRun::state_of(const Samples& samples, int lane) const {
 void RecordedRun::record(const Samples& samples) {
   const Dynamics::Instants now = instants_at(samples);
   for (int i = 0; i < samples.count; ++i) {
-    record(times_[samples.first + static_cast<size_t>(i)], lane_of(samples.y, i),
-           state_of(samples, i), now, i);
+    record(lane_of(samples.y, i), state_of(samples, i), now, i);
   }
   if (progress_) progress_(static_cast<double>(states_.size()) / static_cast<double>(rows_));
 }
 
-void RecordedRun::record(const Look& look, const std::vector<double>& y, const PlatformState& state,
+void RecordedRun::record(const std::vector<double>& y, const PlatformState& state,
                          const Dynamics::Instants& now, int lane) {
-  if (!look.is_row) {
-    on_the_way_.push_back(attitude_before(state, look.before_s));
-    return;
+  Truth truth = truth_at(state, camera_.seen(state), now, lane);
+  if (const int place = dynamics_.first_of_translation(); place >= 0) {
+    std::copy_n(y.begin() + place, 4, truth.place_m_m_s.emplace().begin());
   }
-  Quat seen = state.lab_from_body;
-  if (!on_the_way_.empty()) {
-    seen = on_the_way_.front();
-    on_the_way_.pop_front();
-  }
-  Truth truth = truth_at(state, seen, now, lane);
-  truth.place_m_m_s = place_of(dynamics_, y);
   const ZeroOrderHold given = given_.at(state.time_s);
   truth.wheel_rad_s = given.wheel.at(state.time_s);
   if (dynamics_.model().schedule.command_delay_s > 0.0) {

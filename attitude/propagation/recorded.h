@@ -43,30 +43,20 @@ class RecordedRun {
   void keep(Snapshot& snapshot);
 
  private:
-  // The times at which the state of a run is needed: those of its rows and, for a camera with
-  // latency, those of its images. Of two equal times, the image comes first. Images before the
-  // start use the initial state, which is `before_s` later.
-  struct Look {
-    double time_s;
-    bool is_row;
-    double before_s = 0.0;
-  };
-  static std::vector<Look> looks(const PropagationRun& run, double delay_s);
   void take_in(const Samples& samples);
   void hand_on();
   void record(const Samples& samples);
   Dynamics::Instants instants_at(const Samples& samples) const;
   PlatformState state_of(const Samples& samples, int lane) const;
   PlatformState recorded_end();
-  void record(const Look& look, const std::vector<double>& y, const PlatformState& state,
+  void record(const std::vector<double>& y, const PlatformState& state,
               const Dynamics::Instants& now, int lane);
 
   const PowerHistory* beside_;
   std::function<void(double)> progress_;
   Dynamics dynamics_;
   Schedule given_;  // commands when they are given, before any latency of actuators
-  double delay_s_;
-  std::vector<Look> times_;
+  LateCamera camera_;
   size_t rows_, thinning_;
   Recorder recorder_;
   TimeHistory history_;
@@ -75,7 +65,6 @@ class RecordedRun {
   Sampler sampler_;
   std::optional<LiveInstruments> instruments_;
   std::vector<PlatformState> states_;
-  std::deque<Quat> on_the_way_;  // seen by the camera, not yet reported
   std::deque<Samples> waiting_;  // until `beside` extends to their times
 };
 

@@ -386,6 +386,18 @@ double usual_output_rate_Hz(double duration_s) {
 
 namespace {
 
+// Reads position and velocity at the start, zero by default, of a platform that slides.
+void read_initial_place(const Settings& settings, const AttitudeModel& model,
+                        PlatformState& initial) {
+  const int first = Dynamics(model).first_of_translation();
+  if (first < 0) return;
+  auto to = initial.extra.begin() + (first - component::extra);
+  for (const NumbersKey& key : {propagate_key::initial_position, propagate_key::initial_velocity}) {
+    const Vec3 place = in_plane(settings, key);
+    to = std::copy(place.begin(), place.begin() + 2, to);
+  }
+}
+
 // The state at the start. InputError if bearings, stops or battery do not allow it.
 PlatformState read_initial_state(const Settings& settings, const AttitudeModel& model) {
   const std::optional<AttitudeParameters> apm = read_initial_apm(settings);
@@ -487,26 +499,6 @@ PropagationRun read_propagation(const Settings& root) {
   }
   settings.finish();
   return run;
-}
-
-void read_initial_place(const Settings& settings, const AttitudeModel& model,
-                        PlatformState& initial) {
-  const int first = Dynamics(model).first_of_translation();
-  if (first < 0) return;
-  auto to = initial.extra.begin() + (first - component::extra);
-  for (const NumbersKey& key : {propagate_key::initial_position, propagate_key::initial_velocity}) {
-    const Vec3 place = in_plane(settings, key);
-    to = std::copy(place.begin(), place.begin() + 2, to);
-  }
-}
-
-std::optional<std::array<double, 4>> place_of(const Dynamics& dynamics,
-                                              const std::vector<double>& y) {
-  const int place = dynamics.first_of_translation();
-  if (place < 0) return std::nullopt;
-  std::array<double, 4> four{};
-  std::copy_n(y.begin() + place, 4, four.begin());
-  return four;
 }
 
 Key propagate_table() {

@@ -71,13 +71,4 @@ struct PropagationResult {
 PropagationResult propagate(const PropagationRun& run,
                             const std::function<void(double)>& progress = {});
 
-// Reads initial_position_m[2] and initial_velocity_m_s[2] of [propagate] into `initial`, both zero
-// by default. No effect on a platform that does not slide. InputError for other sizes than 2.
-void read_initial_place(const Settings& settings, const AttitudeModel& model,
-                        PlatformState& initial);
-
-// Position (x, y) [m] and velocity [m/s] in a state vector; nullopt if the platform does not slide.
-std::optional<std::array<double, 4>> place_of(const Dynamics& dynamics,
-                                              const std::vector<double>& y);
-
 }  // namespace photorque

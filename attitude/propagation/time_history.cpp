@@ -6,8 +6,8 @@
 
 #include "attitude/model/platform.h"
 #include "core/constants.h"
-#include "core/numerics/extremes.h"
 #include "core/numerics/order.h"
+#include "core/numerics/series.h"
 #include "core/snapshot.h"
 
 namespace photorque {

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include "attitude/environment/epoch.h"
-#include "attitude/recordings/frames.h"
+#include "attitude/recordings/kvn.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
@@ -16,34 +14,29 @@ namespace photorque {
 
 namespace {
 
-using Segment = AttitudeEphemeris::Segment;
-
 // Keywords of the metadata of a segment, in the order of the book.
 struct Keyword {
   const char* name;
-  std::string Segment::*member;
-  bool required;
+  bool required = false;
 };
-constexpr std::array<Keyword, 18> keywords = {{
-    {"OBJECT_NAME", &Segment::object_name, true},
-    {"OBJECT_ID", &Segment::object_id, false},
-    {"CENTER_NAME", &Segment::center_name, false},
-    {"REF_FRAME_A", &Segment::ref_frame_a, true},
-    {"REF_FRAME_B", &Segment::ref_frame_b, true},
-    {"ATTITUDE_DIR", &Segment::attitude_dir, false},
-    {"TIME_SYSTEM", &Segment::time_system, true},
-    {"START_TIME", &Segment::start_time, true},
-    {"USEABLE_START_TIME", &Segment::useable_start_time, false},
-    {"USEABLE_STOP_TIME", &Segment::useable_stop_time, false},
-    {"STOP_TIME", &Segment::stop_time, true},
-    {"ATTITUDE_TYPE", &Segment::attitude_type, true},
-    {"QUATERNION_TYPE", &Segment::quaternion_type, false},
-    {"EULER_ROT_SEQ", &Segment::euler_rot_seq, false},
-    {"RATE_FRAME", &Segment::rate_frame, false},
-    {"ANGVEL_FRAME", &Segment::angvel_frame, false},
-    {"INTERPOLATION_METHOD", &Segment::interpolation_method, false},
-    {"INTERPOLATION_DEGREE", &Segment::interpolation_degree, false},
-}};
+constexpr auto keywords = std::to_array<Keyword>({{"OBJECT_NAME", true},
+                                                  {"OBJECT_ID"},
+                                                  {"CENTER_NAME"},
+                                                  {"REF_FRAME_A", true},
+                                                  {"REF_FRAME_B", true},
+                                                  {"ATTITUDE_DIR"},
+                                                  {"TIME_SYSTEM", true},
+                                                  {"START_TIME", true},
+                                                  {"USEABLE_START_TIME"},
+                                                  {"USEABLE_STOP_TIME"},
+                                                  {"STOP_TIME", true},
+                                                  {"ATTITUDE_TYPE", true},
+                                                  {"QUATERNION_TYPE"},
+                                                  {"EULER_ROT_SEQ"},
+                                                  {"RATE_FRAME"},
+                                                  {"ANGVEL_FRAME"},
+                                                  {"INTERPOLATION_METHOD"},
+                                                  {"INTERPOLATION_DEGREE"}});
 
 // The numbers of a row.
 struct AttitudeType {
@@ -61,169 +54,127 @@ constexpr std::array attitude_types = {AttitudeType{"QUATERNION", 4, false, fals
                                        AttitudeType{"EULER_ANGLE/RATE", 6, true, false},
                                        AttitudeType{"EULER_ANGLE/ANGVEL", 6, true, true}};
 
-const AttitudeType* type_of(const Segment& segment) {
-  const auto* const found =
-      std::ranges::find(attitude_types, segment.attitude_type, &AttitudeType::name);
-  return found != attitude_types.end() ? found : nullptr;
-}
-
 class AemReader : MessageFile {
  public:
   using MessageFile::MessageFile;
 
-  AttitudeEphemeris read() const {
-    AttitudeEphemeris aem;
-    aem.version = required(message, {"CCSDS_AEM_VERS"}).value;
-    aem.creation_date = required(message, {"CREATION_DATE"}).value;
-    aem.originator = required(message, {"ORIGINATOR"}).value;
+  AttitudeEphemeris read() {
+    for (const char* name : {"CCSDS_AEM_VERS", "CREATION_DATE", "ORIGINATOR"}) {
+      required(message, {name});
+    }
     const KvnItem* meta = nullptr;
     for (const KvnItem& item : message.items) {
-      if (item.kind == KvnItem::Kind::comment) aem.comments.push_back(item.value);
       if (item.kind != KvnItem::Kind::block) continue;
       if (item.key == "META") {
         meta = &item;
       } else if (item.key == "DATA" && meta != nullptr) {
-        aem.segments.push_back(read_segment(*meta, item));
+        add_segment(*meta, item);
         meta = nullptr;
       } else {
         throw error(item, "", item.key + "_START", "META_START and DATA_START in turn");
       }
     }
-    if (aem.segments.empty()) throw error(message, "", "no segment", "META and DATA blocks");
-    return aem;
+    if (!object_) throw error(message, "", "no segment", "META and DATA blocks");
+    return std::move(aem_);
   }
 
  private:
-  Segment read_segment(const KvnItem& meta, const KvnItem& data) const {
-    Segment segment;
-    segment.line = meta.line;
+  static std::string text(const KvnItem& meta, std::string_view name, const char* otherwise = "") {
+    const KvnItem* item = meta.find({name});
+    return item != nullptr ? item->value : otherwise;
+  }
+
+  void check_keywords(const KvnItem& meta) const {
     for (const Keyword& keyword : keywords) {
-      const KvnItem* item =
-          keyword.required ? &required(meta, {keyword.name}) : meta.find({keyword.name});
-      if (item != nullptr) segment.*keyword.member = item->value;
+      if (keyword.required) required(meta, {keyword.name});
     }
     for (const KvnItem& item : meta.items) {
-      if (item.kind == KvnItem::Kind::comment) segment.comments.push_back(item.value);
       const bool is_known = std::ranges::find(keywords, item.key, &Keyword::name) != keywords.end();
       if (item.kind == KvnItem::Kind::assignment && !is_known) {
         throw error(item, "", item.key, "a keyword of AEM metadata");
       }
     }
-    if (message.find({"CCSDS_AEM_VERS"})->value.starts_with("1")) required(meta, {"ATTITUDE_DIR"});
-    if (segment.attitude_dir != "A2B" && segment.attitude_dir != "B2A") {
-      throw error(meta, "", segment.attitude_dir, "ATTITUDE_DIR = A2B or B2A");
+    if (text(message, "CCSDS_AEM_VERS").starts_with("1")) required(meta, {"ATTITUDE_DIR"});
+    const std::string direction = text(meta, "ATTITUDE_DIR", "A2B"),
+                      scalar = text(meta, "QUATERNION_TYPE", "LAST");
+    if (direction != "A2B" && direction != "B2A") {
+      throw error(meta, "", direction, "ATTITUDE_DIR = A2B or B2A");
     }
-    const KvnItem* scalar = meta.find({"QUATERNION_TYPE"});
-    if (scalar != nullptr && scalar->value != "FIRST" && scalar->value != "LAST") {
-      throw error(*scalar, scalar->key, in_quotes(scalar->value), "FIRST or LAST");
+    if (scalar != "FIRST" && scalar != "LAST") {
+      throw error(required(meta, {"QUATERNION_TYPE"}), "QUATERNION_TYPE", in_quotes(scalar),
+                  "FIRST or LAST");
     }
-    const AttitudeType* type = type_of(segment);
+  }
+
+  void add_segment(const KvnItem& meta, const KvnItem& data) {
+    check_keywords(meta);
+    const std::string object = text(meta, "OBJECT_NAME"), named = text(meta, "ATTITUDE_TYPE"),
+                      a = text(meta, "REF_FRAME_A"), b = text(meta, "REF_FRAME_B");
+    if (!object_) object_ = object;
+    if (kvn_word(object) != kvn_word(*object_)) {
+      throw error(meta, "OBJECT_NAME", in_quotes(object) + " after " + in_quotes(*object_),
+                  "segments of one object");
+    }
+    const InputLocation where{path.string(), meta.line};
+    const FramePair frames(a, b, where);
+    if (aem_.lab_frame.empty()) aem_.lab_frame = frames.lab();
+    const auto* const type = std::ranges::find(attitude_types, named, &AttitudeType::name);
+    if (type == attitude_types.end()) {
+      throw InputError({path.string()}, "ATTITUDE_TYPE", named,
+                       "QUATERNION or EULER_ANGLE, or one of them with /DERIVATIVE, /RATE or "
+                       "/ANGVEL");
+    }
+    const bool is_rate_in_a =
+        type->ends_in_rate && are_axes_of_a(text(meta, "ANGVEL_FRAME"), a, b, where);
     for (const KvnItem& item : data.items) {
-      if (item.kind == KvnItem::Kind::comment) continue;
-      Row of = row(item);
-      segment.rows.push_back({std::move(of.epoch), std::move(of.numbers), item.line});
-      // For types that are not read as attitudes, all rows must have the length of the first.
-      const size_t now = segment.rows.back().values.size(),
-                   length = type != nullptr ? type->numbers : segment.rows.front().values.size();
-      if (now != length) {
-        throw error(item, "", std::to_string(now) + " numbers",
-                    std::to_string(length) + " after the epoch");
+      const auto [time, v] = row(item);
+      if (v.size() != type->numbers) {
+        throw error(item, "", std::to_string(v.size()) + " numbers",
+                    std::to_string(type->numbers) + " after the epoch");
       }
+      const Epoch now = epoch(time, "epoch", item);
+      if (!begin_) begin_ = now;
+      Quat a_from_b = type->is_euler ? of_angles(meta, v, item) : of_quaternion(meta, v, item);
+      if (text(meta, "ATTITUDE_DIR") == "B2A") a_from_b = a_from_b.conjugate();
+      AemAttitude attitude{now.seconds_since(*begin_), a_from_b, {}, item.line};
+      if (type->ends_in_rate) {
+        // The rate of B with respect to A, in axes of B.
+        const Vec3 rate_rad_s = degree_rad * Vec3(v.data() + v.size() - 3);
+        attitude.rate_body_rad_s =
+            is_rate_in_a ? Vec3(a_from_b.conjugate() * rate_rad_s) : rate_rad_s;
+      }
+      if (frames.is_from_body) {
+        attitude.lab_from_body = a_from_b.conjugate();
+        // A is the body. Its rate is minus that of the lab B, converted from the axes of B to those
+        // of A.
+        if (type->ends_in_rate) attitude.rate_body_rad_s = -(a_from_b * *attitude.rate_body_rad_s);
+      }
+      aem_.rows.push_back(attitude);
     }
-    return segment;
   }
+
+  Quat of_angles(const KvnItem& meta, const std::vector<double>& angles_deg,
+                 const KvnItem& item) const {
+    const std::string sequence = text(meta, "EULER_ROT_SEQ");
+    const auto axes = axes_of_sequence(sequence);
+    if (!axes) throw error(item, "EULER_ROT_SEQ", sequence, "three axes, as 321");
+    return successive_rotations(*axes, degree_rad * Vec3(angles_deg.data()));
+  }
+
+  Quat of_quaternion(const KvnItem& meta, const std::vector<double>& v, const KvnItem& item) const {
+    const bool first = text(meta, "QUATERNION_TYPE") == "FIRST";
+    return unit(first ? Quat(v[0], v[1], v[2], v[3]) : Quat(v[3], v[0], v[1], v[2]), item, "");
+  }
+
+  AttitudeEphemeris aem_;
+  std::optional<std::string> object_;  // of the first segment
+  std::optional<Epoch> begin_;         // of the first row
 };
-
-// Successive rotations about the axes of `sequence` ("321" or "ZYX"), each about an axis of the
-// frame that the previous rotations rotated.
-Quat from_euler(const std::string& sequence, const std::vector<double>& angles_deg,
-                const InputLocation& where) {
-  const auto axes = axes_of_sequence(sequence);
-  if (!axes) throw InputError(where, "EULER_ROT_SEQ", sequence, "three axes, as 321");
-  Quat q = Quat::Identity();
-  for (size_t i = 0; i < axes->size(); ++i) {
-    q = q * Quat(Eigen::AngleAxisd(angles_deg[i] * degree_rad, Vec3::Unit((*axes)[i])));
-  }
-  return q;
-}
-
-Quat to_quaternion(const Segment& segment, const AttitudeType& type, const std::vector<double>& v,
-                   const InputLocation& where) {
-  if (type.is_euler) return from_euler(segment.euler_rot_seq, v, where);
-  const bool first = segment.quaternion_type == "FIRST";
-  const Quat q = first ? Quat(v[0], v[1], v[2], v[3]) : Quat(v[3], v[0], v[1], v[2]);
-  if (!(std::abs(q.norm() - 1.0) < 0.01)) {
-    throw InputError(where, "", "a quaternion of norm " + shortest(q.norm()), "unit norm");
-  }
-  return q.normalized();
-}
-
-Epoch epoch_of(const std::string& text, const InputLocation& where) {
-  const std::optional<Epoch> epoch = parse_epoch(text);
-  if (!epoch) throw InputError(where, "epoch", text, "a time as 2000-01-01T12:00:00");
-  return *epoch;
-}
-
-FramePair frames_of(const Segment& segment, const std::filesystem::path& file) {
-  return {segment.ref_frame_a, segment.ref_frame_b, {file.string(), segment.line}};
-}
 
 }  // namespace
 
-std::vector<Segment::Sample> Segment::attitudes(const std::filesystem::path& file) const {
-  const AttitudeType* type = type_of(*this);
-  if (type == nullptr) {
-    throw InputError({file.string()}, "ATTITUDE_TYPE", attitude_type,
-                     "QUATERNION or EULER_ANGLE, or one of them with /DERIVATIVE, /RATE or "
-                     "/ANGVEL");
-  }
-  const bool is_rate_in_a = type->ends_in_rate && are_axes_of_a(angvel_frame, ref_frame_a,
-                                                                ref_frame_b, {file.string(), line});
-  std::vector<Sample> samples;
-  std::optional<Epoch> first;
-  for (const Row& row : rows) {
-    const InputLocation where{file.string(), row.line};
-    const Epoch epoch = epoch_of(row.epoch, where);
-    if (!first) first = epoch;
-    Quat q = to_quaternion(*this, *type, row.values, where);
-    if (attitude_dir == "B2A") q = q.conjugate();
-    samples.push_back({epoch.seconds_since(*first), q});
-    if (!type->ends_in_rate) continue;
-    const double* rate = row.values.data() + row.values.size() - 3;
-    const Vec3 rate_rad_s = degree_rad * Vec3(rate[0], rate[1], rate[2]);
-    samples.back().rate_rad_s = is_rate_in_a ? Vec3(q.conjugate() * rate_rad_s) : rate_rad_s;
-  }
-  return samples;
-}
-
-std::vector<AemAttitude> aem_attitudes(const std::filesystem::path& path) {
-  const AttitudeEphemeris aem = read_aem(path);
-  const Segment& first = aem.segments.front();
-  std::vector<AemAttitude> all;
-  std::optional<Epoch> begin;
-  for (const Segment& segment : aem.segments) {
-    if (kvn_word(segment.object_name) != kvn_word(first.object_name)) {
-      throw InputError({path.string(), segment.line}, "OBJECT_NAME",
-                       in_quotes(segment.object_name) + " after " + in_quotes(first.object_name),
-                       "segments of one object");
-    }
-    const bool is_from_body = frames_of(segment, path).is_from_body;
-    const std::vector<Segment::Sample> samples = segment.attitudes(path);
-    for (size_t i = 0; i < samples.size(); ++i) {
-      const Epoch epoch = *parse_epoch(segment.rows[i].epoch);
-      if (!begin) begin = epoch;
-      const Quat& q = samples[i].a_from_b;
-      AemAttitude attitude{epoch.seconds_since(*begin), is_from_body ? Quat(q.conjugate()) : q,
-                           samples[i].rate_rad_s, segment.rows[i].line};
-      // A is the body. Its rate is minus that of the lab B, converted from the axes of B to those
-      // of A.
-      if (is_from_body && attitude.rate_body_rad_s) {
-        attitude.rate_body_rad_s = -(q * *attitude.rate_body_rad_s);
-      }
-      all.push_back(attitude);
-    }
-  }
-  return all;
+AttitudeEphemeris read_aem(const std::filesystem::path& path) {
+  return AemReader(path, "AEM").read();
 }
 
 bool is_aem(const std::filesystem::path& path) {
@@ -234,66 +185,35 @@ bool is_aem(const std::filesystem::path& path) {
 }
 
 bool is_in_space(const std::filesystem::path& path) {
-  return is_aem(path) && !frames_of(read_aem(path).segments.front(), path).lab().starts_with("LAB");
+  return is_aem(path) && !read_aem(path).lab_frame.starts_with("LAB");
 }
 
-AttitudeEphemeris read_aem(const std::filesystem::path& path) {
-  return AemReader(path, "AEM").read();
-}
-
-KvnItem to_kvn(const AttitudeEphemeris& aem) {
-  KvnItem message = kvn_block("");
-  message.items.push_back(kvn_assignment("CCSDS_AEM_VERS", aem.version));
-  for (const std::string& comment : aem.comments) message.items.push_back(kvn_comment(comment));
-  message.items.push_back(kvn_assignment("CREATION_DATE", aem.creation_date));
-  message.items.push_back(kvn_assignment("ORIGINATOR", aem.originator));
-  for (const Segment& segment : aem.segments) {
-    KvnItem meta = kvn_block("META");
-    for (const std::string& comment : segment.comments) meta.items.push_back(kvn_comment(comment));
-    for (const Keyword& keyword : keywords) {
-      const std::string& value = segment.*keyword.member;
-      if (!value.empty()) meta.items.push_back(kvn_assignment(keyword.name, value));
-    }
-    KvnItem data = kvn_block("DATA");
-    for (const AttitudeEphemeris::Row& row : segment.rows) {
-      std::string line = row.epoch;
-      for (const double x : row.values) line += " " + shortest(x);
-      data.items.push_back(kvn_data(line));
-    }
-    message.items.push_back(std::move(meta));
-    message.items.push_back(std::move(data));
-  }
-  return message;
-}
-
-void write_aem(const std::filesystem::path& path, const AttitudeEphemeris& aem) {
-  write_file_whole(path, kvn_text(to_kvn(aem)));
-}
-
-AttitudeEphemeris make_aem(const std::vector<PlatformState>& states, const std::string& epoch,
-                           const std::string& object_name, const std::string& creation_date) {
-  const Epoch zero = epoch_of(epoch, {});
-  AttitudeEphemeris aem;
-  aem.creation_date = creation_date;
-  aem.originator = "PHOTORQUE";
-  Segment segment;
-  segment.object_name = object_name;
-  segment.object_id = "NONE";
-  segment.center_name = "EARTH";
-  segment.ref_frame_a = "LAB";
-  segment.ref_frame_b = "SC_BODY_1";
-  segment.quaternion_type = "LAST";
-  segment.comments = {"LAB: x east, y north, z up; the quaternion rotates body vectors into it"};
+void write_aem(const std::filesystem::path& path, const std::vector<PlatformState>& states,
+               const std::string& epoch, const std::string& object_name,
+               const std::string& comment) {
+  const std::optional<Epoch> zero = parse_epoch(epoch);
+  if (!zero) throw InputError({}, "epoch", epoch, "a time as 2000-01-01T12:00:00");
+  const auto time = [&](const PlatformState& state) {
+    return epoch_text(zero->after(state.time_s));
+  };
+  std::string text = "CCSDS_AEM_VERS = 1.0\nCOMMENT " + comment + "\nCREATION_DATE  = " + epoch +
+                     "\nORIGINATOR     = PHOTORQUE\n\nMETA_START\n"
+                     "COMMENT LAB: x east, y north, z up; the quaternion rotates body vectors into "
+                     "it\nOBJECT_NAME     = " +
+                     object_name +
+                     "\nOBJECT_ID       = NONE\nCENTER_NAME     = EARTH\n"
+                     "REF_FRAME_A     = LAB\nREF_FRAME_B     = SC_BODY_1\n"
+                     "ATTITUDE_DIR    = A2B\nTIME_SYSTEM     = UTC\nSTART_TIME      = " +
+                     time(states.front()) + "\nSTOP_TIME       = " + time(states.back()) +
+                     "\nATTITUDE_TYPE   = QUATERNION\nQUATERNION_TYPE = LAST\nMETA_STOP\n\n"
+                     "DATA_START\n";
   for (const PlatformState& state : states) {
     const Quat& q = state.lab_from_body;
-    segment.rows.push_back({epoch_text(zero.after(state.time_s)), {q.x(), q.y(), q.z(), q.w()}});
+    text += time(state);
+    for (const double component : {q.x(), q.y(), q.z(), q.w()}) text += " " + shortest(component);
+    text += "\n";
   }
-  if (!segment.rows.empty()) {
-    segment.start_time = segment.rows.front().epoch;
-    segment.stop_time = segment.rows.back().epoch;
-  }
-  aem.segments.push_back(std::move(segment));
-  return aem;
+  write_file_whole(path, text + "DATA_STOP\n");
 }
 
 }  // namespace photorque

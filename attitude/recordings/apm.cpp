@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "attitude/recordings/frames.h"
 #include "attitude/recordings/kvn.h"
 #include "core/constants.h"
 #include "core/text/parse.h"
@@ -109,39 +108,29 @@ class ApmReader : MessageFile {
 
   Quat of_quaternion(const KvnItem& in) const {
     const FramePair between = frames(in, quaternion_frames);
-    Quat q(number(in, "QC", ""), number(in, "Q1", ""), number(in, "Q2", ""), number(in, "Q3", ""));
-    constexpr double tolerance = 0.01;
-    if (!(std::abs(q.norm() - 1.0) < tolerance)) {
-      throw error(required(in, {"Q1"}), "Q1 … QC", "a quaternion of norm " + shortest(q.norm()),
-                  "unit norm");
-    }
-    q.normalize();
+    const Quat q = unit(
+        {number(in, "QC", ""), number(in, "Q1", ""), number(in, "Q2", ""), number(in, "Q3", "")},
+        required(in, {"Q1"}), "Q1 … QC");
     return lab_from_body(is_backwards(in, "Q_DIR") ? q.conjugate() : q, between);
   }
 
-  // Axes of the successive rotations, each in the frame that the previous rotations rotated.
+  // Axes and angles of successive_rotations().
   struct Euler {
-    std::array<Vec3, 3> axes;
-    std::array<double, 3> angles_rad;
-    Quat rotation(size_t first) const {
-      Quat q = Quat::Identity();
-      for (size_t i = first; i < 3; ++i) q = q * Quat(Eigen::AngleAxisd(angles_rad[i], axes[i]));
-      return q;
-    }
+    std::array<int, 3> axes;
+    Vec3 angles_rad;
   };
   Euler read_angles(const KvnItem& in) const {
     const KvnItem& sequence = required(in, {"EULER_ROT_SEQ"});
-    Euler euler;
     const bool is_version_1 = in.find({"ANGLE_1"}) == nullptr;
     const auto places = axes_of_sequence(sequence.value);
     if (!places || (*places)[0] == (*places)[1] || (*places)[1] == (*places)[2]) {
       throw error(sequence, "EULER_ROT_SEQ", in_quotes(sequence.value),
                   "three axes, as 321 or ZYX");
     }
+    Euler euler{*places, {}};
     constexpr std::array<const char*, 3> of_version_2 = {"ANGLE_1", "ANGLE_2", "ANGLE_3"};
     constexpr std::array<const char*, 3> of_version_1 = {"X_ANGLE", "Y_ANGLE", "Z_ANGLE"};
     for (size_t i = 0; i < 3; ++i) {
-      euler.axes[i] = Vec3::Unit((*places)[i]);
       const KvnItem* angle = nullptr;
       if (!is_version_1) {
         angle = &required(in, {of_version_2[i]});
@@ -154,14 +143,15 @@ class ApmReader : MessageFile {
         }
         if (angle == nullptr) throw error(in, name, "nothing", "an angle of EULER_ROT_SEQ");
       }
-      euler.angles_rad[i] = degree_rad * number(*angle, "deg");
+      euler.angles_rad[static_cast<Eigen::Index>(i)] = degree_rad * number(*angle, "deg");
     }
     return euler;
   }
 
   Quat of_angles(const KvnItem& in) const {
     const FramePair between = frames(in, euler_frames);
-    const Quat q = read_angles(in).rotation(0);
+    const Euler euler = read_angles(in);
+    const Quat q = successive_rotations(euler.axes, euler.angles_rad);
     return lab_from_body(is_backwards(in, "EULER_DIR") ? q.conjugate() : q, between);
   }
 
@@ -203,12 +193,13 @@ class ApmReader : MessageFile {
     const Vec3 slopes_rad_s =
         degree_rad * vector(in, {"ANGLE_1_DOT", "ANGLE_2_DOT", "ANGLE_3_DOT"}, "deg/s");
     Vec3 of_b_rad_s = Vec3::Zero();  // with respect to A, in B's axes
-    for (size_t i = 0; i < 3; ++i) {
-      of_b_rad_s += slopes_rad_s[static_cast<Eigen::Index>(i)] *
-                    (euler.rotation(i + 1).conjugate() * euler.axes[i]);
+    for (int i = 0; i < 3; ++i) {
+      const Quat after = successive_rotations(euler.axes, euler.angles_rad, i + 1);
+      of_b_rad_s +=
+          slopes_rad_s[i] * (after.conjugate() * Vec3::Unit(euler.axes[static_cast<size_t>(i)]));
     }
     if (!frames(in, euler_frames).is_from_body) return of_b_rad_s;
-    return -(euler.rotation(0) * of_b_rad_s);
+    return -(successive_rotations(euler.axes, euler.angles_rad) * of_b_rad_s);
   }
 };
 

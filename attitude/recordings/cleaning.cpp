@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace photorque {
 namespace {
@@ -241,6 +242,7 @@ void remove_outliers(Recording& recording) {
 void measure_times(Recording& recording) {
   const std::vector<double>& t = recording.time_s;
   RecordingReport& report = recording.report;
+  report.gaps.clear();
   std::vector<double> intervals;
   for (size_t i = 1; i < t.size(); ++i) intervals.push_back(t[i] - t[i - 1]);
   report.median_interval_s = middle_of(intervals.begin(), intervals.end());
@@ -260,6 +262,49 @@ void measure_times(Recording& recording) {
   if (count > 1) {
     const double n = static_cast<double>(count);
     report.jitter_s = std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1.0)));
+  }
+}
+
+std::optional<ClockJump> jump_of_clock(const Recording& recording) {
+  constexpr double longest_gap = 10.0;
+  if (recording.rows() < 2) return std::nullopt;
+  double gaps_s = 0.0, longest_s = 0.0;
+  ClockJump jump;
+  for (const RecordingReport::Gap& gap : recording.report.gaps) {
+    const double gap_s = gap.to_s - gap.from_s;
+    gaps_s += gap_s;
+    if (gap_s > longest_s) jump.gap = gap;
+    longest_s = std::max(longest_s, gap_s);
+  }
+  jump.recorded_s = recording.time_s.back() - recording.time_s.front() - gaps_s;
+  if (!(longest_s > longest_gap * jump.recorded_s)) return std::nullopt;
+  return jump;
+}
+
+void omit_isolated_rows(Recording& recording) {
+  constexpr size_t most = 2, fewest_left = 20;
+  std::vector<double>& t = recording.time_s;
+  const auto erase = [&](size_t first, size_t count) {
+    const auto from = [first](auto& values) {
+      return values.begin() + static_cast<std::ptrdiff_t>(first);
+    };
+    const auto rows = static_cast<std::ptrdiff_t>(count);
+    t.erase(from(t), from(t) + rows);
+    for (Channel& channel : recording.channels) {
+      channel.values.erase(from(channel.values), from(channel.values) + rows);
+    }
+    recording.report.isolated_rows += rows;
+    recording.report.rows_kept -= rows;
+  };
+  while (t.size() >= fewest_left + 1) {
+    measure_times(recording);
+    const std::optional<ClockJump> jump = jump_of_clock(recording);
+    if (!jump) return;
+    const auto before =
+        static_cast<size_t>(std::ranges::upper_bound(t, jump->gap.from_s) - t.begin());
+    const size_t after = t.size() - before, fewer = std::min(before, after);
+    if (fewer > most || t.size() - fewer < fewest_left) return;
+    erase(before < after ? 0 : before, fewer);
   }
 }
 

@@ -1,5 +1,8 @@
-// Repairs of a recording: sign flips, bad quaternions, outliers, gaps.
+// Repairs of a recording: sign flips, bad quaternions, held readings, outliers, gaps.
 #pragma once
+
+#include <optional>
+#include <string>
 
 #include "attitude/recordings/recording.h"
 
@@ -20,7 +23,31 @@ void repair_quaternions(Recording& recording);
 // of its range and a camera that repeats its last attitude.
 void remove_outliers(Recording& recording);
 
+// Keeps the first row of each reading if the log is faster than a sensor and repeats its readings
+// (sample and hold), as repetitions are not independent. All channels of the sensor are then equal
+// in runs that nearly all have the same length, or two that differ by one row. Empties the other
+// cells of the sensor, and removes rows without a reading unless a command or an event changes. A
+// slow motion in coarse digits and a body at rest are kept.
+void remove_held_readings(Recording& recording);
+
+// The finding of remove_held_readings() as a note.
+std::string held_readings_text(const RecordingReport& report);
+
 // Sets median interval, jitter and gaps of the report.
 void measure_times(Recording& recording);
+
+// A gap that is more than ten times as long as all recorded time. Causes are a clock that was set
+// during the recording, or two recordings in one file.
+struct ClockJump {
+  RecordingReport::Gap gap;
+  double recorded_s = 0.0;  // without gaps
+};
+
+// The longest such gap of the report; nothing without one.
+std::optional<ClockJump> jump_of_clock(const Recording& recording);
+
+// Leaves out the first or last one or two rows if such a gap separates them from at least twenty
+// others, as a row of zeros before the clock runs.
+void omit_isolated_rows(Recording& recording);
 
 }  // namespace photorque

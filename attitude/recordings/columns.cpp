@@ -139,7 +139,6 @@ namespace {
 
 constexpr const char* euler_names[] = {"roll_rad", "pitch_rad", "yaw_rad"};
 constexpr const char* angle_names[] = {"angle_rad", "roll_rad", "pitch_rad", "yaw_rad"};
-constexpr const char* event_names[] = {"thruster", "impulse", "event"};
 // Index of the axis: 0, 1 or 2 for x, y or z.
 size_t index_of(const Vec3& axis) {
   Eigen::Index k = 0;
@@ -185,7 +184,7 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
                              const std::string& name)
     : recording_(recording), platform_(platform) {
   for (const char* known : schedule_channels) take(known);
-  for (const char* known : event_names) {
+  for (const char* known : event_channels) {
     if (event_ == nullptr) event_ = take(known);
   }
   const bool one_axis = platform.turns_about_one_axis();

@@ -4,7 +4,7 @@
 
 #include "attitude/recordings/recording.h"
 #include "core/errors.h"
-#include "core/numerics/steady_intervals.h"
+#include "core/numerics/series.h"
 
 namespace photorque {
 namespace {
@@ -103,7 +103,7 @@ Schedule Recording::schedule() const {
 }
 
 Schedule read_command_file(const std::filesystem::path& path) {
-  const Recording recording = read_recording(path);
+  const Recording recording = read_recording(path, {.omit_isolated_rows = false});
   const RecordingReport& report = recording.report;
   // A recording with an attitude may have faults of its clock and is read like a recording.
   const bool has_quaternion = recording.find("q_w") != nullptr;

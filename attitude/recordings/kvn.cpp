@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
@@ -16,9 +17,8 @@ namespace {
 constexpr std::string_view start = "_START", stop = "_STOP", comment = "COMMENT";
 
 KvnItem parse_assignment(std::string_view line, size_t equals) {
-  KvnItem item;
-  item.kind = KvnItem::Kind::assignment;
-  item.key = trimmed(line.substr(0, equals));
+  KvnItem item{.kind = KvnItem::Kind::assignment,
+               .key = std::string(trimmed(line.substr(0, equals)))};
   std::string_view value = trimmed(line.substr(equals + 1));
   const size_t bracket = value.rfind('[');
   if (value.ends_with(']') && bracket != std::string_view::npos) {
@@ -29,13 +29,18 @@ KvnItem parse_assignment(std::string_view line, size_t equals) {
   return item;
 }
 
+bool is_comment(std::string_view line) {
+  return line.starts_with(comment) && (line.size() == comment.size() ||
+                                       line[comment.size()] == ' ' || line[comment.size()] == '\t');
+}
+
 // Reads a block's lines up to its end.
 class Parser {
  public:
   explicit Parser(const std::filesystem::path& path) : path_(path), lines_(path) {}
 
   KvnItem read() {
-    KvnItem message = kvn_block("");
+    KvnItem message;
     fill(message, 0);
     return message;
   }
@@ -51,7 +56,7 @@ class Parser {
     std::string_view raw;
     while (lines_.next(raw)) {
       const std::string_view line = trimmed(raw);
-      if (line.empty()) continue;
+      if (line.empty() || is_comment(line)) continue;
       if (line.find('=') == std::string_view::npos && line.ends_with(stop)) {
         if (block.key + std::string(stop) == line) return;
         throw error(std::string(line), block.key.empty() ? "a block" : block.key + "_STOP");
@@ -63,57 +68,26 @@ class Parser {
 
   KvnItem parse(std::string_view line, const KvnItem& block, int depth) {
     const int number = static_cast<int>(lines_.number());
-    const auto located = [number](KvnItem item) {
+    const size_t equals = line.find('=');
+    if (equals != std::string_view::npos) {
+      KvnItem item = parse_assignment(line, equals);
       item.line = number;
       return item;
-    };
-    if (line.starts_with(comment) &&
-        (line.size() == comment.size() || line[comment.size()] == ' ' ||
-         line[comment.size()] == '\t')) {
-      return located(kvn_comment(std::string(trimmed(line.substr(comment.size())))));
     }
-    const size_t equals = line.find('=');
-    if (equals != std::string_view::npos) return located(parse_assignment(line, equals));
     if (line.ends_with(start)) {
-      KvnItem inner = located(kvn_block(std::string(line.substr(0, line.size() - start.size()))));
+      KvnItem inner{.key = std::string(line.substr(0, line.size() - start.size())), .line = number};
       fill(inner, depth + 1);
       return inner;
     }
     // Rows of an OEM follow its metadata without a block. They start with the year of an epoch.
     const bool is_row = line.front() >= '0' && line.front() <= '9';
     if (block.key.empty() && !is_row) throw error(in_quotes(line), "a keyword = value");
-    return located(kvn_data(std::string(line)));
+    return {.kind = KvnItem::Kind::data, .value = std::string(line), .line = number};
   }
 
   std::filesystem::path path_;
   TextLines lines_;
 };
-
-void append(std::string& text, const KvnItem& block) {
-  size_t widest = 0;
-  for (const KvnItem& item : block.items) {
-    if (item.kind == KvnItem::Kind::assignment) widest = std::max(widest, item.key.size());
-  }
-  for (const KvnItem& item : block.items) {
-    switch (item.kind) {
-      case KvnItem::Kind::comment:
-        text += std::string(comment) + (item.value.empty() ? "" : " " + item.value) + "\n";
-        break;
-      case KvnItem::Kind::assignment:
-        text += item.key + std::string(widest - item.key.size(), ' ') + " = " + item.value;
-        text += (item.unit.empty() ? "" : " [" + item.unit + "]") + "\n";
-        break;
-      case KvnItem::Kind::data:
-        text += item.value + "\n";
-        break;
-      case KvnItem::Kind::block:
-        text += "\n" + item.key + std::string(start) + "\n";
-        append(text, item);
-        text += item.key + std::string(stop) + "\n";
-        break;
-    }
-  }
-}
 
 }  // namespace
 
@@ -124,25 +98,6 @@ const KvnItem* KvnItem::find(std::initializer_list<std::string_view> names) cons
     }
   }
   return nullptr;
-}
-
-KvnItem kvn_comment(const std::string& text) {
-  return {KvnItem::Kind::comment, "", text, "", {}, 0};
-}
-KvnItem kvn_assignment(const std::string& key, const std::string& value, const std::string& unit) {
-  return {KvnItem::Kind::assignment, key, value, unit, {}, 0};
-}
-KvnItem kvn_data(const std::string& line) {
-  return {KvnItem::Kind::data, "", line, "", {}, 0};
-}
-KvnItem kvn_block(const std::string& name) {
-  return {KvnItem::Kind::block, name, "", "", {}, 0};
-}
-
-std::string kvn_text(const KvnItem& message) {
-  std::string text;
-  append(text, message);
-  return text;
 }
 
 namespace {
@@ -251,6 +206,12 @@ Epoch MessageFile::utc(const Epoch& time, const std::string& system, const KvnIt
   return *utc;
 }
 
+Quat MessageFile::unit(const Quat& q, const KvnItem& at, const std::string& key) const {
+  constexpr double tolerance = 0.01;
+  if (std::abs(q.norm() - 1.0) < tolerance) return q.normalized();
+  throw error(at, key, "a quaternion of norm " + shortest(q.norm()), "unit norm");
+}
+
 std::optional<std::array<int, 3>> axes_of_sequence(std::string_view sequence) {
   std::array<int, 3> axes{};
   if (sequence.size() != axes.size()) return std::nullopt;
@@ -260,6 +221,63 @@ std::optional<std::array<int, 3>> axes_of_sequence(std::string_view sequence) {
     if (axes[i] < 0 || axes[i] > 2) return std::nullopt;
   }
   return axes;
+}
+
+Quat successive_rotations(const std::array<int, 3>& axes, const Vec3& angles_rad, int first) {
+  Quat q = Quat::Identity();
+  for (int i = first; i < 3; ++i) {
+    q = q * Quat(Eigen::AngleAxisd(angles_rad[i], Vec3::Unit(axes[static_cast<size_t>(i)])));
+  }
+  return q;
+}
+
+FrameAxes axes_of_frame(std::string_view frame) {
+  if (frame == "EME2000" || frame == "J2000" || frame == "GCRF" || frame.starts_with("ICRF")) {
+    return FrameAxes::J2000;
+  }
+  if (frame.starts_with("TOD") || frame.starts_with("MOD") || frame.starts_with("TEME")) {
+    return FrameAxes::of_date;
+  }
+  return frame.starts_with("ITRF") ? FrameAxes::earth : FrameAxes::unknown;
+}
+
+namespace {
+
+// Whether a frame is fixed in the body: SC_BODY, STARTRACKER_2…
+bool is_body_frame(std::string_view frame) {
+  constexpr std::array<std::string_view, 16> parts = {
+      "ACC",        "ACTUATOR", "AST", "CSS", "DSS",    "ESA",     "GYRO_FRAME",  "IMU_FRAME",
+      "INSTRUMENT", "MTA",      "RW",  "SA",  "SENSOR", "SC_BODY", "STARTRACKER", "TAM"};
+  // The number or letter of the part follows, as in SENSOR_1.
+  return std::ranges::any_of(parts, [frame](std::string_view part) {
+    if (!frame.starts_with(part)) return false;
+    const std::string_view rest = frame.substr(part.size());
+    return rest.empty() || rest.front() == '_' || (rest.front() >= '0' && rest.front() <= '9');
+  });
+}
+
+}  // namespace
+
+FramePair::FramePair(const std::string& frame_a, const std::string& frame_b,
+                     const InputLocation& where)
+    : a(frame_a), b(frame_b), is_from_body(is_body_frame(a)) {
+  const FrameAxes axes = axes_of_frame(lab());
+  // MCI: inertial about Mars. LVLH_INERTIAL and the like: those of an orbit at one instant.
+  const bool is_still = lab().starts_with("LAB") || lab().ends_with("INERTIAL") ||
+                        lab() == "B1950" || lab() == "MCI" || axes == FrameAxes::J2000 ||
+                        axes == FrameAxes::of_date;
+  if (is_body_frame(b) != is_from_body && is_still) return;
+  throw InputError(where, "", "the frames " + in_quotes(a) + " and " + in_quotes(b),
+                   "one of the body (SC_BODY_1) and one of space: inertial (EME2000, J2000, GCRF, "
+                   "ICRF, TOD, MOD, TEME, B1950, MCI) or LAB");
+}
+
+bool are_axes_of_a(const std::string& frame, const std::string& a, const std::string& b,
+                   const InputLocation& where) {
+  if (frame == "REF_FRAME_A" || frame == a) return true;
+  if (frame == "REF_FRAME_B" || frame == b) return false;
+  throw InputError(where, "ANGVEL_FRAME", frame.empty() ? "nothing" : in_quotes(frame),
+                   "one of the two frames, " + in_quotes(a) + " or " + in_quotes(b));
 }
 
 }  // namespace photorque

@@ -50,9 +50,10 @@ class XmlMessage {
                   "<" + std::string(root.name()) + ">" + (is_combined ? several + kind + ">" : ""),
                   "one <" + kind + ">");
     }
-    KvnItem message = kvn_block("");
-    message.items.push_back(
-        kvn_assignment("CCSDS_" + upper_kind + "_VERS", node.attribute("version").value()));
+    KvnItem message;
+    message.items.push_back({.kind = KvnItem::Kind::assignment,
+                             .key = "CCSDS_" + upper_kind + "_VERS",
+                             .value = node.attribute("version").value()});
     add_assignments(node.child("header"), message);
     for (const pugi::xml_node& segment : node.child("body").children("segment")) {
       if (kind == "apm") {
@@ -60,8 +61,7 @@ class XmlMessage {
         add_parameters(segment.child("data"), message);
         continue;
       }
-      KvnItem meta = kvn_block("META"), data = kvn_block("DATA");
-      meta.line = line_of(segment.child("metadata"));
+      KvnItem meta{.key = "META", .line = line_of(segment.child("metadata"))}, data{.key = "DATA"};
       add_assignments(segment.child("metadata"), meta);
       const char* row = kind == "aem" ? "attitudeState" : "stateVector";
       for (const pugi::xml_node& state : segment.child("data").children(row)) {
@@ -88,11 +88,12 @@ class XmlMessage {
     for (const pugi::xml_node& node : parent.children()) {
       const std::string name = node.name();
       // Rows have the scalar last in any file, so QUATERNION_TYPE is left out.
-      if (node.type() != pugi::node_element || name == "QUATERNION_TYPE") continue;
-      KvnItem item = name == "COMMENT" ? kvn_comment(node.child_value())
-                                       : kvn_assignment(name, node.child_value());
-      item.line = line_of(node);
-      block.items.push_back(std::move(item));
+      if (node.type() != pugi::node_element || name == "QUATERNION_TYPE" || name == "COMMENT")
+        continue;
+      block.items.push_back({.kind = KvnItem::Kind::assignment,
+                             .key = name,
+                             .value = node.child_value(),
+                             .line = line_of(node)});
     }
   }
 
@@ -120,8 +121,7 @@ class XmlMessage {
       const auto known = std::ranges::find_if(
           parameter_blocks, [&name](const auto& names) { return name == names[0]; });
       if (known == parameter_blocks.end()) continue;
-      KvnItem block = kvn_block((*known)[1]);
-      block.line = line_of(node);
+      KvnItem block{.key = (*known)[1], .line = line_of(node)};
       for (const pugi::xml_node& leaf : leaves_of(node)) block.items.push_back(assignment_of(leaf));
       message.items.push_back(std::move(block));
     }
@@ -135,9 +135,11 @@ class XmlMessage {
         name = leaf.attribute(attribute).value();
       }
     }
-    KvnItem item = kvn_assignment(name, leaf.child_value(), leaf.attribute("units").value());
-    item.line = line_of(leaf);
-    return item;
+    return {.kind = KvnItem::Kind::assignment,
+            .key = name,
+            .value = leaf.child_value(),
+            .unit = leaf.attribute("units").value(),
+            .line = line_of(leaf)};
   }
 
   KvnItem row_of(const pugi::xml_node& state) const {
@@ -145,9 +147,7 @@ class XmlMessage {
     std::ranges::stable_sort(leaves, {}, [](const auto& leaf) { return place_of(leaf.name()); });
     const std::string line = joined_text(
         leaves, " ", [&](const pugi::xml_node& leaf) { return std::string(leaf.child_value()); });
-    KvnItem row = kvn_data(line);
-    row.line = line_of(state);
-    return row;
+    return {.kind = KvnItem::Kind::data, .value = line, .line = line_of(state)};
   }
 
   std::filesystem::path path_;

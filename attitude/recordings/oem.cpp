@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "attitude/environment/environment.h"
-#include "attitude/recordings/frames.h"
 #include "attitude/recordings/kvn.h"
 #include "core/constants.h"
 #include "core/text/parse.h"
@@ -234,9 +233,7 @@ struct OrbitEphemeris::Reader : MessageFile {
         end_segment();
         meta = &item;
       } else if (item.kind == KvnItem::Kind::block && item.key == "DATA") {
-        for (const KvnItem& row : item.items) {
-          if (row.kind != KvnItem::Kind::comment) rows.push_back(&row);
-        }
+        for (const KvnItem& row : item.items) rows.push_back(&row);
       } else if (item.kind == KvnItem::Kind::data) {
         if (meta == nullptr) throw error(item, "", "a row of data", "META_START before it");
         rows.push_back(&item);

@@ -54,10 +54,7 @@ const std::vector<std::pair<std::string, KeyUnit>>& known_channels() {
 }
 
 FileColumn column_named(const std::string& in_file, const RecordingOptions& options) {
-  std::string name = in_file;
-  for (const auto& [channel, written] : options.columns) {
-    if (written == in_file) name = channel;
-  }
+  const std::string name(name_of_column(in_file, options.columns));
   const KeyUnit unit = unit_of_key(name);
   for (const auto& [channel, known] : known_channels()) {
     if (known.stem == unit.stem && known.dimension == unit.dimension) return {channel, unit.to_SI};
@@ -97,7 +94,7 @@ class RecordingReader {
 
   // Reads an AEM: attitudes, and rates if it has any.
   void take_attitudes() {
-    const std::vector<AemAttitude> attitudes = aem_attitudes(path_);
+    const std::vector<AemAttitude> attitudes = read_aem(path_).rows;
     for (const auto& [channel, written] : options_.columns) {
       recording_.report.absent_columns.insert(written);
     }
@@ -245,9 +242,8 @@ class RecordingReader {
       if (cells_.size() == 1 && time_column_ == 0U && std::isfinite(time_of_row())) {
         ++rows_of_times_;
       } else if (!first_malformed_) {
-        first_malformed_ = error(
-            "", "a row of " + std::to_string(cells_.size()) + " cells",
-            std::to_string(columns_.size()) + ", as in the header; numbers have a point, no comma");
+        first_malformed_ = wrong_row({path_.string(), static_cast<int>(lines_.number())},
+                                     cells_.size(), columns_.size());
       }
       return;
     }
@@ -355,7 +351,9 @@ class RecordingReader {
       return !std::ranges::all_of(channel.values, [](double x) { return std::isnan(x); });
     });
     if (!any) throw error("", "no number in any channel", "at least one channel with values");
+    if (options_.omit_isolated_rows) omit_isolated_rows(recording_);
     repair_quaternions(recording_);
+    remove_held_readings(recording_);
     if (options_.remove_outliers) remove_outliers(recording_);
     measure_times(recording_);
   }
@@ -421,11 +419,13 @@ std::string RecordingReport::text() const {
   note(rows_without_time, "rows without a time left out");
   note(repeated_times, "rows that repeat a time left out");
   note(backward_times, "rows out of order left out");
+  note(isolated_rows, "rows at an end beyond a jump of the clock left out");
   note(static_cast<int64_t>(gaps.size()), "gaps");
   note(empty_cells, "empty cells");
   note(unreadable_cells, "cells that hold no number");
   note(bad_quaternions, "quaternions that are not of unit norm left out");
   note(flipped_quaternions, "sign flips of the quaternion undone");
+  if (held_readings > 0) out << "\n" << held_readings_text(*this);
   for (const auto& [channel, count] : outliers) {
     out << "\n" << count << " outliers in " << channel << " left out";
   }

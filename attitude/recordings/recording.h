@@ -38,10 +38,12 @@ struct RecordingReport {
   int64_t rows_without_time = 0;  // left out
   int64_t repeated_times = 0;     // a repeated time: left out
   int64_t backward_times = 0;     // earlier than a row before: left out
+  int64_t isolated_rows = 0;      // at an end, beyond a jump of the clock: left out
   int64_t first_backward_line = 0;
   int64_t first_repeated_line = 0;
   int64_t empty_cells = 0;          // cells
   int64_t unreadable_cells = 0;     // cells without a number: emptied
+  int64_t held_readings = 0;        // repeated until the next one (remove_held_readings())
   int64_t outlier_cells = 0;        // cells of measured channels: emptied
   int64_t bad_quaternions = 0;      // of a norm that is not 1 to 1 %: emptied
   int64_t flipped_quaternions = 0;  // sign changes undone
@@ -52,9 +54,11 @@ struct RecordingReport {
   double median_interval_s = 0.0;
   double jitter_s = 0.0;                    // standard deviation of the intervals, gaps left out
   std::map<std::string, int64_t> outliers;  // cells by channel
-  bool has_decimal_commas = false;          // "0,25" between other separators, read as 0.25
-  bool has_old_yaw = false;                 // a column named heading, read as yaw
-  std::set<std::string> absent_columns;     // named by the options, not in the file
+  // Rows for which a held reading is repeated, by the first channel of the instrument.
+  std::map<std::string, int64_t> rows_per_reading;
+  bool has_decimal_commas = false;       // "0,25" between other separators, read as 0.25
+  bool has_old_yaw = false;              // a column named heading, read as yaw
+  std::set<std::string> absent_columns;  // named by the options, not in the file
 
   // The report in a few lines, with only the findings that occurred.
   std::string text() const;
@@ -85,6 +89,8 @@ inline constexpr std::array schedule_channels = {
     "command_x_N_m", "command_y_N_m",    "command_z_N_m",     "command_x_N",
     "command_y_N",   "command_body_x_N", "command_body_y_N",  "wheel_x_rad_s",
     "wheel_y_rad_s", "wheel_z_rad_s",    "battery_current_A", "led_current_A"};
+// Channels of which one flags sudden changes of the motion.
+inline constexpr std::array event_channels = {"thruster", "impulse", "event"};
 
 struct RecordingOptions {
   // Names in the file by channel: {"gyro_x_rad_s", "wx"}. A channel may have another unit of its
@@ -95,6 +101,7 @@ struct RecordingOptions {
   // column `frame`, divided by this rate.
   std::optional<double> rate_Hz = {};
   bool remove_outliers = true;
+  bool omit_isolated_rows = true;   // at the ends, beyond a jump of the clock (cleaning.h)
   std::string angle_sequence = {};  // of the recording
   // A point about which the position x_m, y_m rotates. The positions are then converted to one
   // angle from the vertical through it.

@@ -262,9 +262,8 @@ void Recorder::add_gyro(const Truth& truth) {
   const Vec3 reading = truth.gyro_rad_s + bias_walk_rad_s_ +
                        gyro.noise_rad_s * gaussian_vector(seed_, gyro_noise, row);
   const bool due = is_due(gyro.rate_Hz, truth.time_s);
-  put("gyro_x_rad_s", due ? reading.x() : empty_cell);
-  put("gyro_y_rad_s", due ? reading.y() : empty_cell);
-  put("gyro_z_rad_s", due ? reading.z() : empty_cell);
+  for (int k = 0; k < 3; ++k)
+    put(gyro_names[static_cast<size_t>(k)], due ? reading[k] : empty_cell);
 }
 
 void Recorder::add_place(const Truth& truth) {

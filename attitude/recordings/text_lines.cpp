@@ -56,6 +56,7 @@ TextLines::TextLines(const std::filesystem::path& path, const std::vector<std::s
 void TextLines::skip_to_first_row() {
   fill();
   std::vector<std::string_view> cells;
+  size_t width = 0;  // of the widest row of numbers
   for (size_t end = 0; (end = buffer_.find('\n', begin_)) != std::string::npos;) {
     const std::string_view line = trimmed(std::string_view(buffer_).substr(begin_, end - begin_));
     for (const char separator : {';', '\t', ',', ' '}) {
@@ -63,8 +64,9 @@ void TextLines::skip_to_first_row() {
       const auto is_number = [separator](std::string_view cell) {
         return cell.empty() || !std::isnan(number_of_cell(cell, separator).value_or(NAN));
       };
-      if (line.empty() || cells.size() != header_.size() || !std::ranges::all_of(cells, is_number))
-        continue;
+      if (line.empty() || !std::ranges::all_of(cells, is_number)) continue;
+      width = std::max(width, cells.size());
+      if (cells.size() != header_.size()) continue;
       header_line_ = joined_text(header_, std::string(1, separator),
                                  [](const std::string& name) { return "\"" + name + "\""; });
       return;
@@ -72,9 +74,11 @@ void TextLines::skip_to_first_row() {
     begin_ = end + 1;
     ++number_;
   }
-  throw InputError({path_.string()}, "header",
-                   "no row of " + std::to_string(header_.size()) + " numbers at the beginning",
-                   "as many names as the file has columns");
+  throw InputError(
+      {path_.string()}, "header",
+      "no row of " + std::to_string(header_.size()) + " numbers at the beginning",
+      "as many names as the file has columns" +
+          (width == 0 ? "" : ": " + std::to_string(width) + ", column_2 for one without a use"));
 }
 
 TextLines::~TextLines() {

@@ -83,10 +83,6 @@ std::vector<std::string> names_of(const std::vector<Disturbance>& disturbances) 
   return names;
 }
 
-Quat lab_from_body(double tilt_rad, double heading_rad) {
-  return lab_from_body_at(tilt_rad, heading_rad).rotation;
-}
-
 double read_charge_drawn_C(const Settings& settings, const Platform& platform) {
   if (!settings.has(budget_key::state_of_charge)) {
     const double drawn_C = settings.get(budget_key::charge_drawn);
@@ -109,7 +105,7 @@ double read_charge_drawn_C(const Settings& settings, const Platform& platform) {
 
 PlatformState read_state(const Settings& settings, const AttitudeModel& model) {
   const Quat attitude =
-      lab_from_body(settings.get(budget_key::tilt), settings.get(budget_key::heading));
+      lab_from_body_at(settings.get(budget_key::tilt), settings.get(budget_key::heading)).rotation;
   const Vec3 spin_lab_rad_s(0.0, 0.0, settings.get(budget_key::spin));
   const Vec3 rate_body_rad_s =
       attitude.conjugate() * spin_lab_rad_s + settings.get(budget_key::rate);
@@ -141,33 +137,20 @@ struct Acting {
   Vec3 mean_body_N_m = Vec3::Zero();
 };
 
-// The torques of all disturbances at an instant, and the resulting acceleration.
-struct Snapshot {
-  std::vector<Vec3> torques_body_N_m;
-  Vec3 angular_acceleration_rad_s2;
-};
-Snapshot snapshot(const Dynamics& dynamics, const PlatformState& state) {
-  const Dynamics::Instants now = dynamics.at(state);
-  Snapshot result;
-  for (const Vec3Of<Lanes>& torque : now.torque_body_N_m) {
-    result.torques_body_N_m.push_back(lane_of(torque, 0));
-  }
-  for (int k = 0; k < 3; ++k) {
-    result.angular_acceleration_rad_s2[k] = now.rates[component::rate + static_cast<size_t>(k)][0];
-  }
-  return result;
+Vec3 acceleration_rad_s2(const Dynamics::Instants& now) {
+  constexpr size_t rate = component::rate;
+  return {now.rates[rate][0], now.rates[rate + 1][0], now.rates[rate + 2][0]};
 }
 
 // A disturbance that changes the conditions of others (gravity, field, command, inertia) exerts no
 // torque. Its effect is I times the difference of the accelerations with it and without it.
-Vec3 torque_by_conditions_body_N_m(const AttitudeModel& model, size_t d, const Snapshot& with,
-                                   const PlatformState& state) {
+Vec3 torque_by_conditions_body_N_m(const AttitudeModel& model, size_t d,
+                                   const Dynamics::Instants& with, const PlatformState& state) {
   if (!model.disturbances[d].states.empty()) return Vec3::Zero();
   AttitudeModel without = model;
   without.disturbances.erase(without.disturbances.begin() + static_cast<std::ptrdiff_t>(d));
-  const Snapshot rest = snapshot(Dynamics(std::move(without)), state);
-  return model.platform.inertia_kg_m2 *
-         (with.angular_acceleration_rad_s2 - rest.angular_acceleration_rad_s2);
+  const Vec3 rest_rad_s2 = acceleration_rad_s2(Dynamics(std::move(without)).at(state));
+  return model.platform.inertia_kg_m2 * (acceleration_rad_s2(with) - rest_rad_s2);
 }
 
 // The torques of all disturbances within the second after `state`, at constant attitude and rate. A
@@ -180,16 +163,16 @@ std::vector<Acting> acting_within_a_second(const AttitudeModel& model, const Pla
   for (int i = 0; i < instants; ++i) {
     PlatformState then = state;
     then.time_s += static_cast<double>(i) / instants;
-    Snapshot now = snapshot(dynamics, then);
+    const Dynamics::Instants now = dynamics.at(then);
     for (size_t d = 0; d < all.size(); ++d) {
-      Vec3& torque_N_m = now.torques_body_N_m[d];
       // A condition is evaluated once: its changes within a second are not considered.
       if (model.disturbances[d].stage == Stage::conditions) {
         if (i > 0) continue;
-        torque_N_m = torque_by_conditions_body_N_m(model, d, now, then);
+        const Vec3 torque_N_m = torque_by_conditions_body_N_m(model, d, now, then);
         all[d] = {torque_N_m, torque_N_m};
         continue;
       }
+      const Vec3 torque_N_m = lane_of(now.torque_body_N_m[d], 0);
       all[d].mean_body_N_m += torque_N_m / instants;
       if (!(torque_N_m.norm() <= all[d].largest_body_N_m.norm())) {
         all[d].largest_body_N_m = torque_N_m;
@@ -274,14 +257,12 @@ Plot tilt_plot(const Budget& budget) {
     plot.curves.push_back({name});
   }
   const double limit_rad = budget.model.platform.tilt_limit_rad.value_or(30.0 * degree_rad);
-  const double heading_rad = std::atan2((budget.state.lab_from_body * Vec3::UnitZ()).y(),
-                                        (budget.state.lab_from_body * Vec3::UnitZ()).x());
   const Vec3 rate_lab_rad_s = budget.state.lab_from_body * budget.state.rate_body_rad_s;
   const Dynamics dynamics(budget.model);
   constexpr int steps = 60;
   for (int i = 0; i <= steps; ++i) {
     const double tilt_rad = limit_rad * i / steps;
-    const Quat attitude = lab_from_body(tilt_rad, heading_rad);
+    const Quat attitude = lab_from_body_at(tilt_rad, heading_rad(budget.state)).rotation;
     // Appendages rotate with the body at every tilt.
     PlatformState state = dynamics.initial_state(attitude.conjugate() * rate_lab_rad_s);
     state.lab_from_body = attitude;
@@ -330,14 +311,7 @@ Budget make_budget(AttitudeModel model, const PlatformState& state) {
 
 Budget read_budget(const Settings& root) {
   AttitudeModel model = read_attitude_model(root).model;
-  if (!root.has(budget_key::budget)) {
-    const PlatformState upright = Dynamics(model).initial_state();
-    Budget budget = make_budget(std::move(model), upright);
-    budget.air_parts = read_own_air_parts(root);
-    budget.beside_paper = false;
-    return budget;
-  }
-  const Settings settings = own_table(root, "budget", true);
+  const Settings settings = own_table(root, "budget", false);
   const PlatformState state = read_state(settings, model);
   Budget budget = make_budget(std::move(model), state);
   budget.catalogue = read_catalogue(settings);

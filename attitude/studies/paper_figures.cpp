@@ -6,7 +6,6 @@
 #include "attitude/disturbances/bearing/air_bearing.h"
 #include "attitude/disturbances/mass/battery.h"
 #include "attitude/disturbances/mass/moving_masses.h"
-#include "attitude/disturbances/mass/sag_compliance.h"
 #include "attitude/environment/igrf.h"
 #include "attitude/recordings/sensors.h"
 #include "core/constants.h"
@@ -65,6 +64,53 @@ double year_of_dipole(double field_T) {
     return GeomagneticModel(year).dipole_equatorial_field_T() > field_T;
   };
   return bisect(1900.0, 2025.0, stronger).low;  // the field decreases during the whole interval
+}
+
+// The paper's platform as separate bodies: the plates, the rails, the blunt faces.
+struct PaperAirParts {
+  std::vector<AirPart> plates, rails, faces;
+
+  std::vector<AirPart> all() const {
+    std::vector<AirPart> all = plates;
+    all.insert(all.end(), rails.begin(), rails.end());
+    all.insert(all.end(), faces.begin(), faces.end());
+    return all;
+  }
+};
+
+PaperAirParts paper_air_parts(const PaperInputs& in) {
+  const double scale = in.platform_scale;
+  const auto disc = [&](const char* name, double side_m) {
+    return AirPart{
+        .name = name, .shape = AirShape::disc, .radius_m = scale * equal_area_radius_m(side_m)};
+  };
+  const auto face = [&](const char* name, double width_m, double height_m, double distance_m,
+                        double drag_coefficient) {
+    return AirPart{.name = name,
+                   .shape = AirShape::blunt_face,
+                   .count = 4.0,
+                   .area_m2 = scale * scale * width_m * height_m,
+                   .distance_m = scale * distance_m,
+                   .drag_coefficient = drag_coefficient};
+  };
+  PaperAirParts parts;
+  parts.plates = {disc("top plate", in.top_plate_side_m),
+                  disc("bottom plate", in.bottom_plate_side_m)};
+  parts.rails = {{.name = "vertical rails",
+                  .shape = AirShape::upright_cylinder,
+                  .count = 4.0,
+                  .radius_m = scale * in.rail_radius_m,
+                  .length_m = scale * in.rail_length_m,
+                  .distance_m = scale * in.rail_distance_m,
+                  .drag_coefficient = in.cylinder_drag_coefficient}};
+  parts.faces = {face("horizontal masses", 0.045, 0.040, 0.150, in.box_drag_coefficient),
+                 face("vertical masses", 0.045, 0.045, 0.193, in.box_drag_coefficient),
+                 face("batteries", 0.040, 0.012, 0.105, in.box_drag_coefficient),
+                 face("avionics", 0.050, 0.030, 0.148, in.box_drag_coefficient),
+                 // Different parts of a rib of 0.2025 m have different speeds. This distance from
+                 // the axis gives the third moment of the rib.
+                 face("stiffeners", 0.2025, 0.020, 0.0758, in.rib_drag_coefficient)};
+  return parts;
 }
 
 // The cylinders in the position of eq. 22: horizontal, from the axis outwards.
@@ -182,8 +228,7 @@ void add_battery(std::vector<PaperFigure>& all) {
   all.push_back({"battery_shift_m", "II.C.3", 3.32e-6, exact_m, rounded_m, why});
   all.push_back(
       {"battery_torque_N_m", "II.C.3", 2.3e-4, weight_N * exact_m, weight_N * rounded_m, why});
-  const LoadPhase day{86400.0, 25.0};
-  all.push_back({"energy_of_24_h_Wh", "III.B", 360.0, energy_J({&day, 1}) / 3600.0, nan,
+  all.push_back({"energy_of_24_h_Wh", "III.B", 360.0, 86400.0 * 25.0 / 3600.0, nan,
                  "25 W for 24 h are 600 Wh; 360 Wh are 15 W"});
 }
 
@@ -218,48 +263,6 @@ constexpr AssumedInput assumed_inputs[] = {
 };
 
 }  // namespace
-
-PaperAirParts paper_air_parts(const PaperInputs& in) {
-  const double scale = in.platform_scale;
-  const auto disc = [&](const char* name, double side_m) {
-    return AirPart{
-        .name = name, .shape = AirShape::disc, .radius_m = scale * equal_area_radius_m(side_m)};
-  };
-  const auto face = [&](const char* name, double width_m, double height_m, double distance_m,
-                        double drag_coefficient) {
-    return AirPart{.name = name,
-                   .shape = AirShape::blunt_face,
-                   .count = 4.0,
-                   .area_m2 = scale * scale * width_m * height_m,
-                   .distance_m = scale * distance_m,
-                   .drag_coefficient = drag_coefficient};
-  };
-  PaperAirParts parts;
-  parts.plates = {disc("top plate", in.top_plate_side_m),
-                  disc("bottom plate", in.bottom_plate_side_m)};
-  parts.rails = {{.name = "vertical rails",
-                  .shape = AirShape::upright_cylinder,
-                  .count = 4.0,
-                  .radius_m = scale * in.rail_radius_m,
-                  .length_m = scale * in.rail_length_m,
-                  .distance_m = scale * in.rail_distance_m,
-                  .drag_coefficient = in.cylinder_drag_coefficient}};
-  parts.faces = {face("horizontal masses", 0.045, 0.040, 0.150, in.box_drag_coefficient),
-                 face("vertical masses", 0.045, 0.045, 0.193, in.box_drag_coefficient),
-                 face("batteries", 0.040, 0.012, 0.105, in.box_drag_coefficient),
-                 face("avionics", 0.050, 0.030, 0.148, in.box_drag_coefficient),
-                 // Different parts of a rib of 0.2025 m have different speeds. This distance from
-                 // the axis gives the third moment of the rib.
-                 face("stiffeners", 0.2025, 0.020, 0.0758, in.rib_drag_coefficient)};
-  return parts;
-}
-
-std::vector<AirPart> PaperAirParts::all() const {
-  std::vector<AirPart> all = plates;
-  all.insert(all.end(), rails.begin(), rails.end());
-  all.insert(all.end(), faces.begin(), faces.end());
-  return all;
-}
 
 UnloadedDrag unloaded_drag(const PaperInputs& in) {
   const FilmAir air;
@@ -352,15 +355,13 @@ namespace {
 // Figure 5: both torques as functions of tilt. They are the trigonometric factors of eq. 2 and 3
 // relative to their largest values up to 90 deg.
 Plot elastic_plot() {
-  const DumbbellArms arms{Vec3::UnitX(), 1.0, 1.0, 0.0, 1.0};
-  const CounterbalanceBeams beams{1.0, 1.0, 1.0, 1};
   Plot::Curve dumbbell{"dumbbell"}, tabletop{"tabletop"};
   for (int tilt_deg = 0; tilt_deg <= 90; ++tilt_deg) {
     const double tilt_rad = tilt_deg * degree_rad;
     dumbbell.x.push_back(tilt_deg);
-    dumbbell.y.push_back(sag_torque_N_m(arms, tilt_rad, 1.0) / sag_torque_N_m(arms, pi / 2, 1.0));
+    dumbbell.y.push_back(std::sin(tilt_rad) - 0.5 * std::sin(2.0 * tilt_rad));
     tabletop.x.push_back(tilt_deg);
-    tabletop.y.push_back(sag_torque_N_m(beams, tilt_rad, 1.0) / sag_torque_N_m(beams, pi / 4, 1.0));
+    tabletop.y.push_back(std::sin(2.0 * tilt_rad));
   }
   return {"elastic_torque_by_tilt",
           "Elastic torque over its largest value, balanced at zero tilt",

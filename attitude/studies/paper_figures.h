@@ -83,13 +83,6 @@ struct PaperSensitivity {
 };
 std::vector<PaperSensitivity> paper_sensitivities(const PaperInputs& inputs = {});
 
-// The paper's platform as separate bodies: the plates, the rails, the blunt faces.
-struct PaperAirParts {
-  std::vector<AirPart> plates, rails, faces;
-  std::vector<AirPart> all() const;
-};
-PaperAirParts paper_air_parts(const PaperInputs& inputs = {});
-
 // The bearing of PaperInputs: the ratio of the gap of an unloaded ball to the rated gap. By this
 // ratio the drag in a catalogue, measured without load, is smaller than eq. 17 at the rated gap.
 struct UnloadedDrag {

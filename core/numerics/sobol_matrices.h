@@ -3,6 +3,7 @@
 #pragma once
 
 #include <bit>
+#include <cstring>
 
 #ifdef __AVX2__
 #include <immintrin.h>
@@ -21,8 +22,10 @@ constexpr uint32_t reverse_bits(uint32_t x) {
 }
 
 // A permutation of reversed bits in which every bit is changed only by the bits below it: on the
-// fraction, that is nested uniform scrambling (Vegdahl's constants of the Laine–Karras hash).
-constexpr uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
+// fraction, that is nested uniform scrambling (Vegdahl's constants of the Laine–Karras hash). For a
+// number or several ones in a vector register.
+template <class Words>
+constexpr Words scramble_reversed(Words x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1u;
@@ -44,17 +47,6 @@ inline __m256i reverse_bits(__m256i x) {
       _mm256_shuffle_epi8(reversed, _mm256_and_si256(_mm256_srli_epi32(x, 4), half));
   return _mm256_shuffle_epi8(_mm256_or_si256(_mm256_slli_epi32(low, 4), high), bytes);
 }
-
-inline __m256i scramble_reversed(__m256i x, uint32_t seed) {
-  const auto times = [](__m256i a, uint32_t b) {
-    return _mm256_mullo_epi32(a, _mm256_set1_epi32(static_cast<int>(b)));
-  };
-  x = _mm256_xor_si256(x, times(x, 0x3d20adeau));
-  x = _mm256_add_epi32(x, _mm256_set1_epi32(static_cast<int>(seed)));
-  x = times(x, (seed >> 16) | 1u);
-  x = _mm256_xor_si256(x, times(x, 0x05526c56u));
-  return _mm256_xor_si256(x, times(x, 0x53a22864u));
-}
 #endif
 
 // Scrambles the points reversed[i] ^ common of a block and reverses their bits into fractions.
@@ -62,10 +54,11 @@ inline void scramble_block(const uint32_t* reversed, uint32_t common, uint32_t s
                            uint32_t* fraction) {
 #ifdef __AVX2__
   for (uint32_t i = 0; i < sobol_block; i += 8) {
-    const __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(reversed + i));
-    const __m256i point = _mm256_xor_si256(low, _mm256_set1_epi32(static_cast<int>(common)));
+    uint32_t point __attribute__((vector_size(32)));
+    std::memcpy(&point, reversed + i, sizeof point);
+    point = scramble_reversed(point ^ common, seed);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(fraction + i),
-                        reverse_bits(scramble_reversed(point, seed)));
+                        reverse_bits(reinterpret_cast<__m256i>(point)));
   }
 #else
   for (uint32_t i = 0; i < sobol_block; ++i) {

@@ -71,6 +71,40 @@ std::vector<std::string_view> cells_of(std::string_view line, char separator) {
   return cells;
 }
 
+std::vector<std::string_view> names_between_blanks(std::string_view header) {
+  std::vector<std::string_view> names;
+  bool joins = false;
+  for (const std::string_view word : words_of(header)) {
+    const auto brackets = [&](std::string_view kind) {
+      return names.empty() ? 0 : std::ranges::count_if(names.back(), [&](char c) {
+        return kind.find(c) != std::string_view::npos;
+      });
+    };
+    const bool is_link = word == "/" || word == "in";
+    const bool is_unit = word.starts_with('(') || word.starts_with('[');
+    if (!names.empty() && (joins || is_link || is_unit || brackets("([") > brackets(")]"))) {
+      const char* const begin = names.back().data();
+      names.back() = {begin, static_cast<size_t>(word.data() + word.size() - begin)};
+    } else {
+      names.push_back(word);
+    }
+    joins = is_link;
+  }
+  std::ranges::transform(names, names.begin(), unquoted);
+  return names;
+}
+
+std::string_view name_of_column(std::string_view written,
+                                const std::map<std::string, std::string>& names) {
+  const auto found = std::ranges::find(
+      names, written, [](const auto& item) -> std::string_view { return item.second; });
+  return found != names.end() ? std::string_view(found->first) : written;
+}
+
+bool is_listed(std::string_view text, std::string_view list) {
+  return std::ranges::count(cells_of(list), text) > 0;
+}
+
 std::vector<std::string_view> words_of(std::string_view line, std::string_view separators) {
   std::vector<std::string_view> words;
   for (size_t begin = 0;
@@ -85,6 +119,11 @@ std::vector<std::string_view> words_of(std::string_view line, std::string_view s
 std::string in_quotes(std::string_view text) {
   constexpr size_t max_bytes = 40;
   return "\"" + std::string(text.substr(0, max_bytes)) + (text.size() > max_bytes ? "…\"" : "\"");
+}
+
+InputError wrong_row(const InputLocation& where, size_t cells, size_t of_header) {
+  return {where, "", "a row of " + std::to_string(cells) + " cells",
+          std::to_string(of_header) + ", as in the header; numbers have a point, no comma"};
 }
 
 void require_text(std::string_view begin, const InputLocation& where) {
@@ -222,11 +261,8 @@ NumberColumns read_number_columns(const std::filesystem::path& path,
   std::vector<std::string_view> cells;
   for (std::string_view line; lines.next(line);) {
     split_cells(line, separator, cells);
-    // The cause may be decimal commas, which shift the following cells.
     if (cells.size() > result.header.size()) {
-      throw InputError(lines.where(), "", "a row of " + std::to_string(cells.size()) + " cells",
-                       std::to_string(result.header.size()) +
-                           ", as in the header; numbers have a point, no comma");
+      throw wrong_row(lines.where(), cells.size(), result.header.size());
     }
     for (size_t i = 0; i < names.size(); ++i) {
       const std::string_view cell = places[i] < cells.size() ? cells[places[i]] : "";

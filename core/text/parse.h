@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,6 +33,10 @@ std::vector<std::string_view> cells_of(std::string_view line, char separator = '
 // Splits a line into `cells`, for readers of millions of lines.
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
 
+// The cells of a header between blanks, each unquoted(). A unit belongs to its name: "Voltage (V)",
+// "U / V", "I in A".
+std::vector<std::string_view> names_between_blanks(std::string_view header);
+
 // The separator of the cells of a header: the first of tab, semicolon and comma that it contains,
 // otherwise the blank.
 char separator_of(std::string_view header);
@@ -39,12 +44,24 @@ char separator_of(std::string_view header);
 // empty cell and for the words nan, NaN and NA; nothing for other texts.
 std::optional<double> number_of_cell(std::string_view cell, char separator);
 
+// The name of a column whose cell in the header is `written`: the key of this value in `names`, or
+// the cell itself.
+std::string_view name_of_column(std::string_view written,
+                                const std::map<std::string, std::string>& names);
+
+// Whether a text is one of the words of a list in which commas separate them.
+bool is_listed(std::string_view text, std::string_view list);
+
 // The pieces between any number of separating characters; none is empty.
 std::vector<std::string_view> words_of(std::string_view line,
                                        std::string_view separators = " \t\r\v\f");
 
 // "text" in quotes for a message, cut after 40 bytes.
 std::string in_quotes(std::string_view text);
+
+// The error of a row whose number of cells differs from that of the header. The cause may be
+// decimal commas.
+InputError wrong_row(const InputLocation& where, size_t cells, size_t of_header);
 
 // Throws InputError if a file begins with UTF-16 or is not text. Otherwise readers of lines would
 // report a missing column.

@@ -6,52 +6,21 @@
 
 #include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
-#include "diagnosis/attitude/domain.h"
-#include "diagnosis/attitude/holdout.h"
-#include "diagnosis/attitude/locate.h"
-#include "diagnosis/attitude/model_discrepancy.h"
-#include "diagnosis/attitude/refine.h"
-#include "diagnosis/attitude/textbook_laws.h"
+#include "diagnosis/attitude/findings.h"
 #include "inference/search.h"
 #include "inference/weigh.h"
 
 namespace photorque {
-
-void report_step(const DiagnoseOptions& options, const std::string& what) {
-  if (options.progress) options.progress(what);
-}
-
 namespace {
 
 bool is_among(const Candidate& c, Among among) {
   if (among == Among::all) return true;
-  const bool is_known = among == Among::unscanned || !c.empirical();
+  const bool is_known = among == Among::unscanned || !c.is_empirical;
   const bool acts = c.start.stage != Stage::measurement,
              is_bias = !acts && c.effect.how.per_recording;
-  return c.is_linear() && is_known &&
+  return c.is_linear && is_known &&
          (acts || among < Among::torques_and_bias || (is_bias && among == Among::torques_and_bias));
 }
-
-}  // namespace
-
-std::optional<double> simpler_by(const Trial& first, const Trial& second, const Answer& answer) {
-  std::vector<size_t> ours = first.candidates, theirs = second.candidates;
-  for (const size_t c : second.candidates) std::erase(ours, c);
-  for (const size_t c : first.candidates) std::erase(theirs, c);
-  if (ours.size() != 1 || theirs.size() != 1) return std::nullopt;
-  const Candidate &our = answer.all[ours[0]], &their = answer.all[theirs[0]];
-  const bool push_alike = our.effect.how.needs == their.effect.how.needs;
-  if (push_alike && our.effect.how.steady && their.effect.how.steady) {
-    return static_cast<double>(their.start.parameters.size()) -
-           static_cast<double>(our.start.parameters.size());
-  }
-  const AttitudeModel& model = answer.trials.front().fit.best.model;
-  const std::optional<double> one = braking_power(our, model), other = braking_power(their, model);
-  if (!one || !other) return std::nullopt;
-  return *other - *one;
-}
-
-namespace {
 
 // Keeps the simplest (simpler_by()) of the names that are indistinguishable from the chosen ones.
 void prefer_simpler(const Thresholds& limits, Answer& a) {
@@ -66,49 +35,6 @@ void prefer_simpler(const Thresholds& limits, Answer& a) {
     a.decision.chosen = a.decision.best_named = i;
   }
 }
-
-}  // namespace
-
-Candidates candidates_among(Among among, const NominalModel& nominal,
-                            const std::vector<Observation>& runs, const Thresholds& limits) {
-  Candidates all = all_candidates(nominal, runs, limits);
-  for (const Among first :
-       {Among::unscanned, Among::catalogue, Among::torques_and_bias, Among::torques}) {
-    std::ranges::stable_partition(all.list, [&](const Candidate& c) { return is_among(c, first); });
-  }
-  // An uncertain inertia already has an error parameter; with a second one the scale of all torques
-  // is undetermined.
-  const bool has_error = nominal.uncertain_inertia.has_value();
-  std::erase_if(all.list, [&](const Candidate& c) {
-    const bool is_second = has_error && c.effect.how.inertia_change_kg_m2 != nullptr;
-    return !is_among(c, among) || (among >= Among::catalogue && is_second);
-  });
-  return all;
-}
-
-Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
-                const DiagnoseOptions& options, Among among, const Trial* near) {
-  Answer a;
-  a.all = candidates_among(among, nominal, data.train, options.limits);
-  const AttitudeDomain domain(a.all);
-  const Trial base = nominal_trial(nominal_fit, a.all);
-  std::optional<Trial> begin;
-  if (near != nullptr) begin = domain.refit(*near, data.train, near->fit.best.runs, {});
-  a.trials =
-      inference::search(domain, base, data.train, options.threads, begin ? &*begin : nullptr);
-  a.depends_on = dependences(a.trials, a.all);
-  report_step(options, "comparing with the held-out data");
-  inference::weigh_with_held_out(domain, data.train, data.held, options.threads, a.trials);
-  const auto excess = [&](size_t trial) {
-    return domain.excess_sigma(a.trials[trial], data.train);
-  };
-  a.decision = inference::decide({a.trials.begin(), a.trials.end()}, domain.candidates(), {excess},
-                                 options.limits.decision);
-  prefer_simpler(options.limits, a);
-  return a;
-}
-
-namespace {
 
 double held_chi2_per_sample(const Trial& trial, const RecordedData& data,
                             const Thresholds& limits) {
@@ -179,7 +105,7 @@ void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& 
 }
 
 bool has_law(const Trial& trial, const Candidates& all) {
-  return std::ranges::any_of(trial.candidates, [&](size_t c) { return all[c].empirical(); });
+  return std::ranges::any_of(trial.candidates, [&](size_t c) { return all[c].is_empirical; });
 }
 
 void leave_unexplained(inference::Decision& decision) {
@@ -221,6 +147,63 @@ bool is_simple(const NominalModel& nominal) {
 }
 
 }  // namespace
+
+void report_step(const DiagnoseOptions& options, const std::string& what) {
+  if (options.progress) options.progress(what);
+}
+
+std::optional<double> simpler_by(const Trial& first, const Trial& second, const Answer& answer) {
+  std::vector<size_t> ours = first.candidates, theirs = second.candidates;
+  for (const size_t c : second.candidates) std::erase(ours, c);
+  for (const size_t c : first.candidates) std::erase(theirs, c);
+  if (ours.size() != 1 || theirs.size() != 1) return std::nullopt;
+  const Candidate &our = answer.all[ours[0]], &their = answer.all[theirs[0]];
+  const bool push_alike = our.effect.how.needs == their.effect.how.needs;
+  if (push_alike && our.effect.how.steady && their.effect.how.steady) {
+    return static_cast<double>(their.start.parameters.size()) -
+           static_cast<double>(our.start.parameters.size());
+  }
+  const AttitudeModel& model = answer.trials.front().fit.best.model;
+  const std::optional<double> one = braking_power(our, model), other = braking_power(their, model);
+  if (!one || !other) return std::nullopt;
+  return *other - *one;
+}
+
+Candidates candidates_among(Among among, const NominalModel& nominal,
+                            const std::vector<Observation>& runs, const Thresholds& limits) {
+  Candidates all = all_candidates(nominal, runs, limits);
+  for (const Among first :
+       {Among::unscanned, Among::catalogue, Among::torques_and_bias, Among::torques}) {
+    std::ranges::stable_partition(all.list, [&](const Candidate& c) { return is_among(c, first); });
+  }
+  // An uncertain inertia already has an error parameter; with a second one the scale of all torques
+  // is undetermined.
+  const bool has_error = nominal.uncertain_inertia.has_value();
+  std::erase_if(all.list, [&](const Candidate& c) {
+    const bool is_second = has_error && c.effect.how.inertia_change_kg_m2 != nullptr;
+    return !is_among(c, among) || (among >= Among::catalogue && is_second);
+  });
+  return all;
+}
+
+Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
+                const DiagnoseOptions& options, Among among, const Trial* near) {
+  Answer a;
+  a.all = candidates_among(among, nominal, data.train, options.limits);
+  const Trial base = nominal_trial(nominal_fit, a.all);
+  std::optional<Trial> begin;
+  if (near != nullptr) begin = a.all.refit(*near, data.train, near->fit.best.runs, {});
+  a.trials = inference::search(a.all, base, data.train, options.threads, begin ? &*begin : nullptr);
+  a.depends_on = dependences(a.trials, a.all);
+  report_step(options, "comparing with the held-out data");
+  inference::weigh_with_held_out(a.all, data.train, data.held, options.threads, a.trials);
+  const auto excess = [&](size_t trial) { return a.all.excess_sigma(a.trials[trial], data.train); };
+  a.decision =
+      inference::decide({a.trials.begin(), a.trials.end()}, {a.all.list.begin(), a.all.list.end()},
+                        {excess}, options.limits.decision);
+  prefer_simpler(options.limits, a);
+  return a;
+}
 
 Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOptions& options,
                Fit& nominal_fit) {

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/cross_validation.h"
+#include "diagnosis/attitude/answer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,9 +25,9 @@ void leave_out(size_t first, size_t last, Observation& seen) {
 
 }  // namespace
 
-CrossValidation::CrossValidation(const AttitudeDomain& domain, std::vector<Observation> train,
+CrossValidation::CrossValidation(const Candidates& candidates, std::vector<Observation> train,
                                  std::vector<Observation> held, size_t wanted, int threads)
-    : domain_(domain), threads_(threads), runs_(std::move(train)), train_(runs_.size()) {
+    : all_(candidates), threads_(threads), runs_(std::move(train)), train_(runs_.size()) {
   std::move(held.begin(), held.end(), std::back_inserter(runs_));
   size_t all = 0;
   for (const Observation& seen : runs_) all += seen.blocks();
@@ -46,7 +46,7 @@ std::vector<double> CrossValidation::chi2(const Trial& trial) const {
   std::vector<double> result(segments_.size(), inference::infinity);
   const std::vector<Observation> held{runs_.begin() + static_cast<std::ptrdiff_t>(train_),
                                       runs_.end()};
-  const Trial on_held = domain_.predict(trial, held);
+  const Trial on_held = all_.predict(trial, held);
   if (!std::isfinite(on_held.fit.chi2)) return result;
   std::vector<RunStart> begins = trial.fit.best.runs;
   begins.insert(begins.end(), on_held.fit.best.runs.begin(), on_held.fit.best.runs.end());
@@ -80,14 +80,14 @@ std::vector<double> CrossValidation::predicted(const Trial& trial,
     const Segment& s = segments_[i];
     if (!is_whole[s.run]) leave_out(s.first, s.last, rest[place[s.run]]);
   }
-  const inference::Effort effort{.max_iterations = domain_.limits().fitting.brief_iterations};
-  const Trial others = domain_.refit(trial, rest, begins_of_rest, effort);
+  const inference::Effort effort{.max_iterations = all_.limits.fitting.brief_iterations};
+  const Trial others = all_.refit(trial, rest, begins_of_rest, effort);
   if (!std::isfinite(others.fit.chi2)) return {};
   std::vector<double> result;
   try {
     std::vector<double> of_whole;
     if (!whole.empty()) {
-      const Fit on_whole = domain_.predict(others, whole).fit;
+      const Fit on_whole = all_.predict(others, whole).fit;
       if (!std::isfinite(on_whole.chi2)) return {};
       of_whole = on_whole.run_chi2;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/estimation/axis_readings.h"
@@ -13,27 +14,10 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "diagnosis/attitude/answer.h"
-#include "diagnosis/attitude/empirical_torque.h"
 #include "diagnosis/attitude/findings.h"
-#include "diagnosis/attitude/free_bodies.h"
-#include "diagnosis/attitude/holdout.h"
-#include "diagnosis/attitude/locate.h"
-#include "diagnosis/attitude/manoeuvre.h"
-#include "diagnosis/attitude/recorded_data.h"
 
 namespace photorque {
 namespace {
-
-// Locates the differences between the readings and the nominal model. Returns an empty location if
-// the nominal model cannot be propagated: the two then differ from the start.
-Where locate_differences(const Fit& nominal_fit, const RecordedData& data,
-                         const Thresholds::Location& limits) {
-  try {
-    return locate(residuals_of(nominal_fit, data.train), data.train, limits);
-  } catch (const NumericalError&) {
-    return {};
-  }
-}
 
 void report_explanation(const Answer& answer, const Fit& nominal_fit, const RecordedData& data,
                         const DiagnoseOptions& options, Diagnosis& d) {
@@ -43,7 +27,7 @@ void report_explanation(const Answer& answer, const Fit& nominal_fit, const Reco
   const Trial& chosen = answer.chosen();
   d.verdict = decision.verdict;
   d.confidence = decision.confidence;
-  d.where = locate_differences(nominal_fit, data, all.limits.location);
+  d.where = locate(nominal_fit, data.train, all.limits.location);
   if (d.verdict == Verdict::missing_physics || answer.beside) {
     d.where.depends_on = answer.depends_on;
     d.effects = found_effects(decision, trials, all);
@@ -56,8 +40,7 @@ void report_explanation(const Answer& answer, const Fit& nominal_fit, const Reco
   } else if (d.verdict == Verdict::unexplained) {
     d.where.depends_on = of_unknown_law(answer.depends_on, chosen, all);
     d.empirical = empirical_torques(chosen, all, data.train);
-    d.effects = effects_beside_law(decision, trials, all);
-    d.unnamed = unnamed_effects(decision, trials, all, d.effects);
+    add_effects_beside_law(decision, trials, all, d);
   }
   d.alternatives = alternatives(decision, trials, all);
   try {
@@ -98,18 +81,6 @@ void report_fit_quality(const Fit& before, const Answer& answer, const RecordedD
     d.series.back().held_out_s = {{data.held[run].time_s.front(), data.held[run].time_s.back()}};
     d.series.back().is_held_out = true;
   }
-}
-
-std::vector<std::string> warnings_of(const RecordedData& data,
-                                     const inference::Decision& decision) {
-  std::vector<std::string> warnings = data.warnings;
-  for (const InstrumentFinding& finding : data.instruments) warnings.push_back(finding.text);
-  if (decision.undecided) {
-    warnings.push_back(
-        "only fitted and held-out recordings together show an effect, and they do not determine "
-        "which one: see the alternatives");
-  }
-  return warnings;
 }
 
 // Adds the gain in prediction of segments by each name, with model discrepancy.
@@ -244,12 +215,17 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
     d.unnamed.push_back(as_fitted(answer.chosen(), *nominal.uncertain_inertia));
   }
   report_fit_quality(nominal_fit, answer, data, options.limits, d);
-  d.warnings = warnings_of(data, answer.decision);
+  d.warnings = data.warnings;
+  for (const InstrumentFinding& finding : data.instruments) d.warnings.push_back(finding.text);
+  if (answer.decision.undecided) d.warnings.emplace_back(undecided_effect);
   report_gains_over_segments(answer, d);
   warn_of_weak_holdout(d);
   explain_unit_inertia(stated.model.platform, d);
-  for (const std::string& text : contradicted_priors(answer.chosen(), options.limits.decision)) {
-    d.warnings.push_back(text);
+  // The parameters of a model that does not describe the recording have no meaning.
+  if (d.verdict != Verdict::unexplained ||
+      !inference::has_diverged(answer.chosen(), options.limits)) {
+    std::ranges::copy(contradicted_priors(answer.chosen(), options.limits.decision),
+                      std::back_inserter(d.warnings));
   }
   if (!answer.all.remark.empty() && !d.effects.empty()) d.warnings.push_back(answer.all.remark);
   d.instruments = data.instruments;

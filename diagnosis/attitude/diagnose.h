@@ -22,10 +22,9 @@ struct NamedRecording {
 };
 
 struct DiagnoseOptions {
-  int threads = 0;                 // 0: all
-  size_t max_blocks = 6000;        // per recording after averaging
-  double holdout_fraction = 0.25;  // fraction at the end of each recording, if no holdout is given
-  Thresholds limits;               // limits of search and decision
+  int threads = 0;                       // 0: all
+  size_t max_blocks = 6000;              // per recording after averaging
+  Thresholds limits;                     // limits of search and decision
   std::set<std::string> read_elsewhere;  // columns used by other readers
   // Called with the name of each step as it starts; may be empty.
   std::function<void(const std::string&)> progress;

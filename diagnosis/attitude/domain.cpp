@@ -1,68 +1,58 @@
-#include "diagnosis/attitude/domain.h"
-
+// The motion as a domain of the search for missing effects (inference/domain.h).
 #include "attitude/estimation/fit.h"
 #include "core/parallel.h"
 #include "diagnosis/attitude/effects/scan.h"
-#include "diagnosis/attitude/holdout.h"
+#include "diagnosis/attitude/recorded_data.h"
 
 namespace photorque {
-namespace {
 
-static_assert(inference::Domain<AttitudeDomain>);
+static_assert(inference::Domain<Candidates>);
 
-inference::CandidateTraits traits_of(const Candidate& c) {
-  inference::CandidateTraits traits;
-  traits.name = c.label;
-  traits.is_empirical = c.empirical();
-  traits.is_linear = c.is_linear();
-  traits.is_fast = c.effect.how.fast;
-  traits.is_limit_of_swinging = c.effect.how.inertia_change_kg_m2 != nullptr;
-  traits.is_of_instrument = c.start.stage == Stage::measurement;
-  // Several appendages with different frequencies and axes are distinguishable.
-  traits.swings = c.effect.how.scan == Scan::mode;
-  if (traits.swings) traits.most = 2;
-  traits.has_strength = c.has_linear_strength();
-  traits.parameters = c.start.parameters.size();
-  return traits;
-}
-
-}  // namespace
-
-AttitudeDomain::AttitudeDomain(const Candidates& all) : all_(all) {
-  for (const Candidate& c : all.list) traits_.push_back(traits_of(c));
-}
-
-Trial AttitudeDomain::predict(const Trial& trial, const Runs& runs) const {
+Trial Candidates::predict(const Trial& trial, const Runs& runs) const {
   Trial predicted = trial;
-  predicted.fit = propagate_model(trial.fit, runs, all_.limits);
+  predicted.fit = propagate_model(trial.fit, runs, limits);
   return predicted;
 }
 
-std::vector<double> AttitudeDomain::gains(const Trial& at, const std::vector<size_t>& candidates,
-                                          const Runs& runs) const {
+std::vector<RunStart> Candidates::initial_conditions_of(const Trial& trial) const {
+  return trial.fit.best.runs;
+}
+
+std::vector<RunStart> Candidates::initial_conditions_from_data(const Trial& trial,
+                                                               const Runs& runs) const {
+  return starts_from_data(trial.fit.best, runs);
+}
+
+Trial Candidates::with_initial_conditions(Trial trial, const std::vector<RunStart>& begins) const {
+  trial.fit.best.runs = begins;
+  return trial;
+}
+
+std::vector<double> Candidates::gains(const Trial& at, const std::vector<size_t>& candidates,
+                                      const Runs& runs) const {
   std::vector<ScoreGroup> groups;
   for (const size_t c : candidates) {
-    groups.push_back({all_[c].is_linear() ? std::vector<Disturbance>{all_[c].start}
-                                          : std::vector<Disturbance>{}});
+    groups.push_back(
+        {list[c].is_linear ? std::vector<Disturbance>{list[c].start} : std::vector<Disturbance>{}});
   }
   std::vector<double> result;
   for (const Score& s : score(at.fit, runs, groups)) result.push_back(s.gain);
   return result;
 }
 
-std::vector<std::vector<Start>> AttitudeDomain::starts(const Trial& parent,
-                                                       const std::vector<size_t>& candidates,
-                                                       const Runs& runs, const Runs& averages,
-                                                       int threads) const {
-  const std::vector<double> lines_Hz = line_frequencies_Hz(parent.fit, runs, limits().scoring);
+std::vector<std::vector<Start>> Candidates::starts(const Trial& parent,
+                                                   const std::vector<size_t>& candidates,
+                                                   const Runs& runs, const Runs& averages,
+                                                   int threads) const {
+  const std::vector<double> lines_Hz = line_frequencies_Hz(parent.fit, runs, limits.scoring);
   std::vector<std::vector<Start>> result(candidates.size());
   parallel_for(candidates.size(), threads, [&](size_t i) {
-    result[i] = starts_of(all_[candidates[i]], parent, runs, averages, lines_Hz, limits().scoring);
+    result[i] = starts_of(list[candidates[i]], parent, runs, averages, lines_Hz, limits.scoring);
   });
   return result;
 }
 
-std::vector<Observation> AttitudeDomain::cut(const Runs& runs, size_t pieces) const {
+std::vector<Observation> Candidates::cut(const Runs& runs, size_t pieces) const {
   Runs result;
   for (const Observation& seen : runs) {
     for (size_t i = 0; i < pieces; ++i) {
@@ -70,12 +60,21 @@ std::vector<Observation> AttitudeDomain::cut(const Runs& runs, size_t pieces) co
       if (first == last) continue;
       Observation piece = seen.part(first, last);
       piece.is_piece = true;
-      if (piece.readings(0, piece.blocks()) >= limits().search.min_readings_of_piece) {
+      if (piece.readings(0, piece.blocks()) >= limits.search.min_readings_of_piece) {
         result.push_back(std::move(piece));
       }
     }
   }
   return result;
+}
+
+std::vector<Observation> Candidates::average(const Trial& about, const Runs& runs,
+                                             size_t blocks) const {
+  return averaged_about(about.fit, runs, blocks);
+}
+
+double Candidates::excess_sigma(const Trial& trial, const Runs& runs) const {
+  return photorque::excess_sigma(trial.fit, runs, limits);
 }
 
 }  // namespace photorque

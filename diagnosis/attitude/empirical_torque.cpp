@@ -1,5 +1,3 @@
-#include "diagnosis/attitude/empirical_torque.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -10,18 +8,6 @@
 #include "diagnosis/attitude/findings.h"
 
 namespace photorque {
-
-std::string with_error(double value, double sigma) {
-  if (!(sigma > 0.0) || !std::isfinite(sigma)) return readable_number(value, 4);
-  const auto magnitude = [](double x) { return static_cast<int>(std::floor(std::log10(x))); };
-  const int exponent = magnitude(std::max(std::abs(value), sigma));
-  const bool plain = exponent >= -2 && exponent <= 4;
-  const double unit = plain ? 1.0 : std::pow(10.0, exponent);
-  const int decimals = std::clamp(1 - magnitude(sigma / unit), 0, 9);
-  return printed("(%.*f ± %.*f)", decimals, value / unit, decimals, sigma / unit) +
-         (plain ? "" : "×" + power_of_ten(exponent));
-}
-
 namespace {
 
 // Access to parameters by their index in the law.
@@ -79,26 +65,13 @@ std::string times(int order, const std::string& symbol) {
   return order == 1 ? symbol : std::to_string(order) + " " + symbol;
 }
 
-constexpr const char* direction_of(TorqueAxes axes) {
-  switch (axes) {
-    case TorqueAxes::body:
-      return "about body x, y, z";
-    case TorqueAxes::lab:
-      return "about lab x, y, z";
-    case TorqueAxes::vertical:
-      return "about the vertical";
-    case TorqueAxes::lean:
-      return "about the tilt axis; positive: reduces the tilt";
-    case TorqueAxes::rate:
-      return "against the rate";
-    case TorqueAxes::rate_by_axis:
-      return "against the rate about body x, y, z";
-    case TorqueAxes::command:
-      return "along the command";
-    case TorqueAxes::cross_talk:
-      return "of the command about the other axes, xy, xz, yx, yz, zx, zy";
-  }
-  return "";
+const char* direction_of(TorqueAxes axes) {
+  constexpr const char* directions[] = {
+      "about body x, y, z", "about lab x, y, z",
+      "about the vertical", "about the tilt axis; positive: reduces the tilt",
+      "against the rate",   "against the rate about body x, y, z",
+      "along the command",  "of the command about the other axes, xy, xz, yx, yz, zx, zy"};
+  return directions[static_cast<size_t>(axes)];
 }
 
 // The coefficients of one term about all axes: "(1 ± 0.1)×10⁻⁶ N m FUNCTION about the vertical".
@@ -262,27 +235,6 @@ std::string similar_effects(const EmpiricalShape& shape, const Numbers& numbers)
   return "";
 }
 
-}  // namespace
-
-EmpiricalFormula formula_of(const EmpiricalShape& shape,
-                            const std::vector<FittedParameter>& parameters,
-                            const Eigen::MatrixXd& covariance) {
-  const Numbers numbers(shape, parameters, covariance);
-  EmpiricalFormula formula;
-  formula.text = shape.functions.size() == 1 ? of_one(shape, numbers) : of_drag(shape, numbers);
-  if (!formula.text.empty()) {
-    std::string where;
-    for (const MotionFunction& f : shape.functions) {
-      where += (where.empty() ? "; " : ", ") + std::string(meaning_of(f.of));
-    }
-    formula.text += where;
-  }
-  formula.looks_like = similar_effects(shape, numbers);
-  return formula;
-}
-
-namespace {
-
 constexpr size_t torque_bins = 36;
 constexpr size_t propagated_states = 1000;
 
@@ -411,6 +363,34 @@ EmpiricalTorque torque_of(const Trial& chosen, size_t which, const Candidate& ca
 
 }  // namespace
 
+std::string with_error(double value, double sigma) {
+  if (!(sigma > 0.0) || !std::isfinite(sigma)) return readable_number(value, 4);
+  const auto magnitude = [](double x) { return static_cast<int>(std::floor(std::log10(x))); };
+  const int exponent = magnitude(std::max(std::abs(value), sigma));
+  const bool plain = exponent >= -2 && exponent <= 4;
+  const double unit = plain ? 1.0 : std::pow(10.0, exponent);
+  const int decimals = std::clamp(1 - magnitude(sigma / unit), 0, 9);
+  return printed("(%.*f ± %.*f)", decimals, value / unit, decimals, sigma / unit) +
+         (plain ? "" : "×" + power_of_ten(exponent));
+}
+
+EmpiricalFormula formula_of(const EmpiricalShape& shape,
+                            const std::vector<FittedParameter>& parameters,
+                            const Eigen::MatrixXd& covariance) {
+  const Numbers numbers(shape, parameters, covariance);
+  EmpiricalFormula formula;
+  formula.text = shape.functions.size() == 1 ? of_one(shape, numbers) : of_drag(shape, numbers);
+  if (!formula.text.empty()) {
+    std::string where;
+    for (const MotionFunction& f : shape.functions) {
+      where += (where.empty() ? "; " : ", ") + std::string(meaning_of(f.of));
+    }
+    formula.text += where;
+  }
+  formula.looks_like = similar_effects(shape, numbers);
+  return formula;
+}
+
 std::vector<EmpiricalTorque> empirical_torques(const Trial& chosen, const Candidates& all,
                                                const std::vector<Observation>& runs) {
   const AttitudeModel model = chosen.fit.best.model_of(0, runs.front());
@@ -421,7 +401,7 @@ std::vector<EmpiricalTorque> empirical_torques(const Trial& chosen, const Candid
   std::vector<EmpiricalTorque> result;
   for (size_t i = 0; i < chosen.candidates.size(); ++i) {
     const Candidate& c = all[chosen.candidates[i]];
-    if (c.empirical()) result.push_back(torque_of(chosen, i, c, model, propagated));
+    if (c.is_empirical) result.push_back(torque_of(chosen, i, c, model, propagated));
   }
   return result;
 }

@@ -10,63 +10,21 @@
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 #include "core/text/format.h"
-#include "diagnosis/attitude/empirical_torque.h"
 
 namespace photorque {
-
-std::string known_together(const Vec3& value, const Mat3& covariance) {
-  constexpr double by_itself = 2.0, beyond_doubt = 4.0, next_to_nothing = 0.005;
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    if (!(std::abs(value[k]) <= by_itself * std::sqrt(covariance(k, k)))) return "";
-  }
-  const Eigen::SelfAdjointEigenSolver<Mat3> principal(covariance);
-  double most = beyond_doubt, combined = 0.0, error = 0.0;
-  Vec3 best = Vec3::Zero();
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    Vec3 way = principal.eigenvectors().col(k);
-    Eigen::Index largest = 0;
-    way.cwiseAbs().maxCoeff(&largest);
-    way /= way[largest];
-    const double sigma = std::sqrt(std::max(0.0, way.dot(covariance * way)));
-    const double sum = way.dot(value);
-    if (!(std::abs(sum) > most * sigma)) continue;
-    most = std::abs(sum) / sigma;
-    best = sum < 0.0 ? Vec3(-way) : way;
-    combined = std::abs(sum);
-    error = sigma;
-  }
-  if (combined == 0.0) return "";
-  std::string text;
-  const char* const axes[] = {"x", "y", "z"};
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const double size = std::abs(best[k]);
-    if (size < next_to_nothing) continue;
-    const bool is_less = best[k] < 0.0;
-    text += text.empty() ? (is_less ? "−" : "") : (is_less ? " − " : " + ");
-    if (std::abs(size - 1.0) >= next_to_nothing) text += readable_number(size, 2) + " ";
-    text += axes[k];
-  }
-  return text + " = " + with_error(combined, error);
-}
-
 namespace {
 
 std::vector<std::string> kinds_of(const Trial& t, const Candidates& all) {
   std::vector<std::string> kinds;
   for (const size_t c : t.candidates) {
-    if (!all[c].empirical()) kinds.push_back(all[c].effect.kind);
+    if (!all[c].is_empirical) kinds.push_back(all[c].effect.kind);
   }
   std::sort(kinds.begin(), kinds.end());
   return kinds;
 }
 
-std::string in_words(std::string kind) {
-  std::replace(kind.begin(), kind.end(), '_', ' ');
-  return kind;
-}
-
 std::string label_of(const Trial& t, const Candidates& all) {
-  return joined_text(t.candidates, " and ", [&](size_t c) { return all[c].label; });
+  return joined_text(t.candidates, " and ", [&](size_t c) { return all[c].name; });
 }
 
 // The length of an axis is arbitrary: normalises the vector and keeps only its errors across the
@@ -104,37 +62,6 @@ std::vector<std::string> rivals(const std::string& kind, const Trial& chosen,
   }
   return {result.begin(), result.end()};
 }
-
-}  // namespace
-
-std::vector<FittedParameter> fitted_parameters(const Trial& t, size_t disturbance) {
-  const Eigen::MatrixXd covariance = t.fit.shared_posterior();
-  const auto& parameters = t.fit.best.model.disturbances[disturbance].parameters;
-  const std::vector<SharedParameter> fitted = t.fit.best.shared(disturbance);
-  std::vector<FittedParameter> result;
-  for (size_t p = 0; p < parameters.size(); ++p) {
-    const bool key_is_fitted = std::ranges::any_of(fitted, [&](const SharedParameter& s) {
-      return parameters[s.parameter].key == parameters[p].key;
-    });
-    if (!key_is_fitted) continue;
-    const auto own = std::ranges::find(fitted, p, &SharedParameter::parameter);
-    const Eigen::Index at = own == fitted.end() ? -1 : own->at;
-    const double unit = unit_of_key(parameters[p].key).to_SI;
-    if (result.empty() || result.back().key != parameters[p].key) {
-      result.push_back({parameters[p].key, {}, {}});
-    }
-    result.back().value.push_back(parameters[p].value / unit);
-    // A component that the data do not determine keeps its nominal value.
-    result.back().sigma.push_back(at < 0 ? 0.0
-                                         : std::sqrt(std::max(0.0, covariance(at, at))) / unit);
-    if (at >= 0 && parameters[p].key == "axis" && result.back().value.size() == 3) {
-      make_direction(result.back(), covariance.block<3, 3>(at - 2, at - 2));
-    }
-  }
-  return result;
-}
-
-namespace {
 
 // Moves fitted values to their physical bounds: a fit may exceed a bound by less than the standard
 // error, but an experiment file cannot state such a value.
@@ -223,7 +150,114 @@ std::string explanation_of(const Candidate& c, const Trial& chosen, size_t distu
          readable_number(std::sqrt(stiffness_N_m / inertia_kg_m2) / (2.0 * pi), 3) + " Hz";
 }
 
+// Moves fitted values into the range of their key, which they may leave by less than the standard
+// error: an experiment file cannot state such a value.
+void keep_within_range(const std::string& kind, FittedParameter& fitted) {
+  const DisturbanceKind* const known = find_kind(kind);
+  if (known == nullptr) return;
+  const KeyUnit unit = unit_of_key(fitted.key);
+  for (const Key& key : known->keys) {
+    const KeyUnit same = unit_of_key(key.name);
+    if (same.stem != unit.stem || same.dimension != unit.dimension) continue;
+    for (double& value : fitted.value) {
+      value = std::clamp(value, key.range.low / unit.to_SI, key.range.high / unit.to_SI);
+    }
+  }
+}
+
+// "a (explanation); b (explanation), or c or d, which these data do not distinguish from it" of all
+// named effects.
+std::string names_of(const Diagnosis& d) {
+  return joined_text(d.effects, "; ", [](const FoundEffect& effect) {
+    const std::string others = joined_text(effect.indistinguishable_from, " or ", in_words);
+    return in_words(effect.kind) + " (" + effect.explanation + ")" +
+           (others.empty() ? ""
+                           : ", or " + others + ", which these data do not distinguish from it");
+  });
+}
+
+// Sentence for named effects with an unexplained residual.
+std::string mostly_explained(const Diagnosis& d) {
+  std::string text = "Mostly explained by " + names_of(d);
+  if (d.holdout && d.holdout->chi2_per_sample_after > 0.0) {
+    const double before = d.holdout->chi2_per_sample_before,
+                 after = d.holdout->chi2_per_sample_after;
+    text += after < before
+                ? printed(
+                      ". In the held-out data, the residual (rms) is %.3g of that of the nominal "
+                      "model and %.3g "
+                      "times the noise; the cause of the remainder is unknown",
+                      std::sqrt(after / before), std::sqrt(after))
+                : std::string(
+                      ". The held-out data do not show it: the nominal model predicts them "
+                      "as well");
+  }
+  return text + ".";
+}
+
 }  // namespace
+
+std::string known_together(const Vec3& value, const Mat3& covariance) {
+  constexpr double by_itself = 2.0, beyond_doubt = 4.0, next_to_nothing = 0.005;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (!(std::abs(value[k]) <= by_itself * std::sqrt(covariance(k, k)))) return "";
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> principal(covariance);
+  double most = beyond_doubt, combined = 0.0, error = 0.0;
+  Vec3 best = Vec3::Zero();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    Vec3 way = principal.eigenvectors().col(k);
+    Eigen::Index largest = 0;
+    way.cwiseAbs().maxCoeff(&largest);
+    way /= way[largest];
+    const double sigma = std::sqrt(std::max(0.0, way.dot(covariance * way)));
+    const double sum = way.dot(value);
+    if (!(std::abs(sum) > most * sigma)) continue;
+    most = std::abs(sum) / sigma;
+    best = sum < 0.0 ? Vec3(-way) : way;
+    combined = std::abs(sum);
+    error = sigma;
+  }
+  if (combined == 0.0) return "";
+  std::string text;
+  const char* const axes[] = {"x", "y", "z"};
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double size = std::abs(best[k]);
+    if (size < next_to_nothing) continue;
+    const bool is_less = best[k] < 0.0;
+    text += text.empty() ? (is_less ? "−" : "") : (is_less ? " − " : " + ");
+    if (std::abs(size - 1.0) >= next_to_nothing) text += readable_number(size, 2) + " ";
+    text += axes[k];
+  }
+  return text + " = " + with_error(combined, error);
+}
+
+std::vector<FittedParameter> fitted_parameters(const Trial& t, size_t disturbance) {
+  const Eigen::MatrixXd covariance = t.fit.shared_posterior();
+  const auto& parameters = t.fit.best.model.disturbances[disturbance].parameters;
+  const std::vector<SharedParameter> fitted = t.fit.best.shared(disturbance);
+  std::vector<FittedParameter> result;
+  for (size_t p = 0; p < parameters.size(); ++p) {
+    const bool key_is_fitted = std::ranges::any_of(fitted, [&](const SharedParameter& s) {
+      return parameters[s.parameter].key == parameters[p].key;
+    });
+    if (!key_is_fitted) continue;
+    const auto own = std::ranges::find(fitted, p, &SharedParameter::parameter);
+    const Eigen::Index at = own == fitted.end() ? -1 : own->at;
+    const double unit = unit_of_key(parameters[p].key).to_SI;
+    if (result.empty() || result.back().key != parameters[p].key) {
+      result.push_back({parameters[p].key, {}, {}});
+    }
+    result.back().value.push_back(parameters[p].value / unit);
+    // A component that the data do not determine keeps its nominal value.
+    result.back().sigma.push_back(at < 0 ? 0.0
+                                         : std::sqrt(std::max(0.0, covariance(at, at))) / unit);
+    if (at >= 0 && parameters[p].key == "axis" && result.back().value.size() == 3) {
+      make_direction(result.back(), covariance.block<3, 3>(at - 2, at - 2));
+    }
+  }
+  return result;
+}
 
 std::vector<FoundEffect> found_effects(const inference::Decision& decision,
                                        const std::vector<Trial>& trials, const Candidates& all) {
@@ -231,7 +265,7 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
   std::vector<FoundEffect> effects;
   for (size_t i = 0; i < chosen.candidates.size(); ++i) {
     const Candidate& c = all[chosen.candidates[i]];
-    if (c.empirical()) continue;
+    if (c.is_empirical) continue;
     FoundEffect effect;
     effect.kind = c.effect.kind;
     effect.explanation = explanation_of(c, chosen, chosen.disturbances[i]);
@@ -242,35 +276,24 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
     for (const EffectKey& key : c.effect.keys) {
       if (key.is_fixed) effect.parameters.insert(effect.parameters.begin(), {key.key, key.start});
     }
+    effect.indistinguishable_from = rivals(effect.kind, chosen, trials, all);
+    std::vector<std::string> group = effect.indistinguishable_from;
+    group.push_back(effect.kind);
     for (size_t t = 0; t < trials.size(); ++t) {
       const std::vector<std::string> kinds = kinds_of(trials[t], all);
-      if (std::find(kinds.begin(), kinds.end(), effect.kind) != kinds.end()) {
+      if (std::ranges::find_first_of(kinds, group) != kinds.end()) {
         effect.probability += decision.probability[t];
       }
     }
     effect.probability = std::min(1.0, effect.probability);
-    effect.indistinguishable_from = rivals(effect.kind, chosen, trials, all);
     effects.push_back(std::move(effect));
   }
   return effects;
 }
 
-std::vector<FoundEffect> effects_beside_law(const inference::Decision& decision,
-                                            const std::vector<Trial>& trials,
-                                            const Candidates& all) {
-  std::vector<FoundEffect> effects = found_effects(decision, trials, all);
-  std::erase_if(effects, [&](const FoundEffect& effect) {
-    return std::none_of(decision.beside_law.begin(), decision.beside_law.end(),
-                        [&](size_t c) { return all[c].effect.kind == effect.kind; });
-  });
-  return effects;
-}
-
-std::vector<FoundEffect> unnamed_effects(const inference::Decision& decision,
-                                         const std::vector<Trial>& trials, const Candidates& all,
-                                         const std::vector<FoundEffect>& named) {
-  std::vector<FoundEffect> effects = found_effects(decision, trials, all);
-  const std::vector<inference::Term<Start>> terms = terms_of(trials[decision.chosen]);
+void add_effects_beside_law(const inference::Decision& decision, const std::vector<Trial>& trials,
+                            const Candidates& all, Diagnosis& d) {
+  const Candidates::Terms terms = all.terms_of(trials[decision.chosen]);
   // A strength of zero has no effect, and not every kind accepts it in an experiment file.
   const auto is_nothing = [&](const inference::Term<Start>& term) {
     const Candidate& c = all[term.candidate];
@@ -282,14 +305,16 @@ std::vector<FoundEffect> unnamed_effects(const inference::Decision& decision,
     }
     return has_strength;
   };
-  std::erase_if(effects, [&](const FoundEffect& effect) {
-    const bool is_named = std::ranges::any_of(
-        named, [&](const FoundEffect& other) { return other.kind == effect.kind; });
-    return is_named || std::ranges::any_of(terms, [&](const inference::Term<Start>& term) {
-             return all[term.candidate].effect.kind == effect.kind && is_nothing(term);
-           });
-  });
-  return effects;
+  for (FoundEffect& effect : found_effects(decision, trials, all)) {
+    const auto is_kind = [&](size_t c) { return all[c].effect.kind == effect.kind; };
+    if (std::ranges::any_of(decision.beside_law, is_kind)) {
+      d.effects.push_back(std::move(effect));
+    } else if (std::ranges::none_of(terms, [&](const inference::Term<Start>& term) {
+                 return is_kind(term.candidate) && is_nothing(term);
+               })) {
+      d.unnamed.push_back(std::move(effect));
+    }
+  }
 }
 
 std::vector<Alternative> alternatives(const inference::Decision& decision,
@@ -312,31 +337,10 @@ std::vector<Alternative> alternatives(const inference::Decision& decision,
     a.chosen = label == label_of(trials[decision.chosen], all);
     result.push_back(std::move(a));
   }
-  std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
-    return a.log_evidence_relative > b.log_evidence_relative;
-  });
+  std::ranges::stable_sort(result, std::greater(), &Alternative::log_evidence_relative);
   if (result.size() > most) result.resize(most);
   return result;
 }
-
-namespace {
-
-// Moves fitted values into the range of their key, which they may leave by less than the standard
-// error: an experiment file cannot state such a value.
-void keep_within_range(const std::string& kind, FittedParameter& fitted) {
-  const DisturbanceKind* const known = find_kind(kind);
-  if (known == nullptr) return;
-  const KeyUnit unit = unit_of_key(fitted.key);
-  for (const Key& key : known->keys) {
-    const KeyUnit same = unit_of_key(key.name);
-    if (same.stem != unit.stem || same.dimension != unit.dimension) continue;
-    for (double& value : fitted.value) {
-      value = std::clamp(value, key.range.low / unit.to_SI, key.range.high / unit.to_SI);
-    }
-  }
-}
-
-}  // namespace
 
 std::vector<FittedParameter> refined_priors(const Trial& chosen) {
   std::vector<FittedParameter> result;
@@ -388,40 +392,6 @@ std::vector<std::string> contradicted_priors(const Trial& chosen,
   }
   return sentences;
 }
-
-namespace {
-
-// "a (explanation); b (explanation), or c or d, which these data do not distinguish from it" of all
-// named effects.
-std::string names_of(const Diagnosis& d) {
-  return joined_text(d.effects, "; ", [](const FoundEffect& effect) {
-    const std::string others = joined_text(effect.indistinguishable_from, " or ", in_words);
-    return in_words(effect.kind) + " (" + effect.explanation + ")" +
-           (others.empty() ? ""
-                           : ", or " + others + ", which these data do not distinguish from it");
-  });
-}
-
-// Sentence for named effects with an unexplained residual.
-std::string mostly_explained(const Diagnosis& d) {
-  std::string text = "Mostly explained by " + names_of(d);
-  if (d.holdout && d.holdout->chi2_per_sample_after > 0.0) {
-    const double before = d.holdout->chi2_per_sample_before,
-                 after = d.holdout->chi2_per_sample_after;
-    text += after < before
-                ? printed(
-                      ". In the held-out data, the residual (rms) is %.3g of that of the nominal "
-                      "model and %.3g "
-                      "times the noise; the cause of the remainder is unknown",
-                      std::sqrt(after / before), std::sqrt(after))
-                : std::string(
-                      ". The held-out data do not show it: the nominal model predicts them "
-                      "as well");
-  }
-  return text + ".";
-}
-
-}  // namespace
 
 std::string sentence_of(const Diagnosis& d) {
   // Limits for the held-out χ²: ratio before/after worth stating; excess per sample of a residual.

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/free_bodies.h"
+#include "diagnosis/attitude/findings.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -9,7 +9,6 @@
 #include "core/text/format.h"
 
 namespace photorque {
-
 namespace {
 
 // Limits in units of the mean moment, except for `least_sigma` [standard errors].
@@ -95,6 +94,42 @@ Vec3 principal_moments(const std::vector<double>& i) {
   return Eigen::SelfAdjointEigenSolver<Mat3>(inertia).eigenvalues();
 }
 
+// Residual of free motion (free_inertia.h) with all rates multiplied by a factor; infinite if the
+// rates determine no inertia.
+double left_by(double factor, std::vector<Observation> pieces) {
+  for (Observation& seen : pieces) {
+    for (Vec3& rate : seen.gyro_rad_s) rate *= factor;
+  }
+  const auto found = free_inertia(pieces);
+  return found ? found->left : INFINITY;
+}
+
+struct Factor {
+  double value = 1.0, left = INFINITY;
+};
+
+// Minimum over factors from 0.3 to 3: grid search, then golden section.
+Factor best_factor(const std::vector<Observation>& pieces) {
+  constexpr double widest = 1.1, step = 0.1;  // in the logarithm of the factor
+  double best = 0.0, least = INFINITY;
+  for (double log = -widest; log < widest + 0.5 * step; log += step) {
+    const double left = left_by(std::exp(log), pieces);
+    if (left < least) {
+      least = left;
+      best = log;
+    }
+  }
+  constexpr double section = 0.3819660112501051;
+  double low = best - step, high = best + step;
+  for (int i = 0; i < 16; ++i) {
+    const double a = low + section * (high - low), b = high - section * (high - low);
+    const bool is_below = left_by(std::exp(a), pieces) < left_by(std::exp(b), pieces);
+    (is_below ? high : low) = is_below ? b : a;
+  }
+  const double log = 0.5 * (low + high);
+  return {std::exp(log), left_by(std::exp(log), pieces)};
+}
+
 }  // namespace
 
 std::vector<BodyOfRecordings> different_bodies(const Platform& platform, const RecordedData& data) {
@@ -133,58 +168,6 @@ std::string sentence_of(const std::vector<BodyOfRecordings>& bodies) {
                              "changed; diagnose the recordings separately"
                            : "diagnose them apart");
 }
-
-namespace {
-
-// Residual of free motion (free_inertia.h) with all rates multiplied by a factor; infinite if the
-// rates determine no inertia.
-double left_by(double factor, std::vector<Observation> pieces) {
-  for (Observation& seen : pieces) {
-    for (Vec3& rate : seen.gyro_rad_s) rate *= factor;
-  }
-  const auto found = free_inertia(pieces);
-  return found ? found->left : INFINITY;
-}
-
-struct Factor {
-  double value = 1.0, left = INFINITY;
-};
-
-// Minimum over factors from 0.3 to 3: grid search, then golden section.
-Factor best_factor(const std::vector<Observation>& pieces) {
-  constexpr double widest = 1.1, step = 0.1;  // in the logarithm of the factor
-  double best = 0.0, least = INFINITY;
-  for (double log = -widest; log < widest + 0.5 * step; log += step) {
-    const double left = left_by(std::exp(log), pieces);
-    if (left < least) {
-      least = left;
-      best = log;
-    }
-  }
-  constexpr double section = 0.3819660112501051;
-  double low = best - step, high = best + step;
-  double a = low + section * (high - low), b = high - section * (high - low);
-  double left_a = left_by(std::exp(a), pieces), left_b = left_by(std::exp(b), pieces);
-  for (int i = 0; i < 16; ++i) {
-    if (left_a < left_b) {
-      high = b;
-      b = a;
-      left_b = left_a;
-      a = low + section * (high - low);
-      left_a = left_by(std::exp(a), pieces);
-    } else {
-      low = a;
-      a = b;
-      left_a = left_b;
-      b = high - section * (high - low);
-      left_b = left_by(std::exp(b), pieces);
-    }
-  }
-  const double log = 0.5 * (low + high);
-  return {std::exp(log), left_by(std::exp(log), pieces)};
-}
-
-}  // namespace
 
 std::vector<InstrumentFinding> clock_findings(const Platform& platform, const RecordedData& data) {
   if (platform.has_bearing()) return {};

@@ -1,10 +1,9 @@
-#include "diagnosis/attitude/holdout.h"
+#include "diagnosis/attitude/findings.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "attitude/estimation/fit.h"
-#include "attitude/estimation/starts.h"
 #include "core/errors.h"
 
 namespace photorque {

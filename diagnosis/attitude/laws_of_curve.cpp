@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/laws_of_curve.h"
+#include "diagnosis/attitude/answer.h"
 
 #include <algorithm>
 #include <cmath>

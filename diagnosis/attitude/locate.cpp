@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/locate.h"
+#include "diagnosis/attitude/findings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/constants.h"
+#include "core/errors.h"
 #include "core/numerics/median.h"
 
 namespace photorque {
@@ -99,19 +100,21 @@ std::vector<Where::ChannelMisfit> misfits(const std::vector<Prediction>& residua
     result.push_back({channel_traits(static_cast<int>(k)).name, sum / count,
                       upper_median(std::move(squares)) / median_of_chi2_of_one});
   }
-  std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
-    return a.chi2_per_sample > b.chi2_per_sample;
-  });
+  std::ranges::stable_sort(result, std::greater(), &Where::ChannelMisfit::chi2_per_sample);
   return result;
 }
 
-Where locate(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs,
+Where locate(const Fit& nominal, const std::vector<Observation>& runs,
              const Thresholds::Location& limits) {
-  Where where;
-  where.channels = misfits(residuals);
-  where.intervals_s = intervals(residuals.front(), runs.front(), limits);
-  where.band_Hz = band(residuals.front(), runs.front(), limits);
-  return where;
+  try {
+    const std::vector<Prediction> residuals = residuals_of(nominal, runs);
+    return {misfits(residuals),
+            intervals(residuals.front(), runs.front(), limits),
+            band(residuals.front(), runs.front(), limits),
+            {}};
+  } catch (const NumericalError&) {
+    return {};
+  }
 }
 
 std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials,
@@ -121,7 +124,7 @@ std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials,
   for (const Trial& t : trials) most = std::max(most, t.log_evidence);
   std::map<std::string, double> strength;
   for (const Trial& t : trials) {
-    if (t.candidates.size() != 1 || !all[t.candidates[0]].empirical()) continue;
+    if (t.candidates.size() != 1 || !all[t.candidates[0]].is_empirical) continue;
     const double fraction = (t.log_evidence - nominal) / std::max(1.0, most - nominal);
     double& best = strength[all[t.candidates[0]].variable];
     best = std::max(best, std::clamp(fraction, 0.0, 1.0));
@@ -130,15 +133,14 @@ std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials,
   for (const auto& [variable, fraction] : strength) {
     if (fraction > all.limits.location.min_dependence) result.push_back({variable, fraction});
   }
-  std::stable_sort(result.begin(), result.end(),
-                   [](const auto& a, const auto& b) { return a.strength > b.strength; });
+  std::ranges::stable_sort(result, std::greater(), &Where::Dependence::strength);
   return result;
 }
 
 std::vector<Where::Dependence> of_unknown_law(std::vector<Where::Dependence> depends_on,
                                               const Trial& chosen, const Candidates& all) {
   for (const size_t c : chosen.candidates) {
-    if (!all[c].empirical()) continue;
+    if (!all[c].is_empirical) continue;
     const auto known = std::find_if(depends_on.begin(), depends_on.end(),
                                     [&](const auto& d) { return d.variable == all[c].variable; });
     if (known == depends_on.end()) {

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/manoeuvre.h"
+#include "diagnosis/attitude/findings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,14 +33,6 @@ void spin_up(PlatformState& state) {
   }
 }
 
-void turn_back(PlatformState& state) {
-  state.rate_body_rad_s = -state.rate_body_rad_s;
-}
-
-void turn_a_quarter(PlatformState& state) {
-  state.lab_from_body = Quat(Eigen::AngleAxisd(0.5 * pi, Vec3::UnitZ())) * state.lab_from_body;
-}
-
 void increase_tilt(PlatformState& state) {
   const Vec3 up_body = state.lab_from_body.conjugate() * Vec3::UnitZ();
   const Vec3 across = up_body.cross(Vec3::UnitZ());  // away from the vertical
@@ -55,10 +47,12 @@ std::vector<StartManoeuvre> start_manoeuvres() {
        spin_up},
       {"repeat the run with the opposite sense of rotation: a driving torque keeps its sign, "
        "friction changes it",
-       turn_back},
+       [](PlatformState& state) { state.rate_body_rad_s = -state.rate_body_rad_s; }},
       {"repeat the run from a yaw a quarter turn further: effects fixed to the body turn with "
        "it, those fixed to the room do not",
-       turn_a_quarter},
+       [](PlatformState& state) {
+         state.lab_from_body = Eigen::AngleAxisd(0.5 * pi, Vec3::UnitZ()) * state.lab_from_body;
+       }},
       {"start the run at 0.2 rad more tilt: righting torques deviate from the sine differently",
        increase_tilt},
   };
@@ -107,7 +101,7 @@ struct Rival {
   Rival(const Trial& trial, const Candidates& all, const std::vector<Observation>& recorded) {
     const size_t blocks = all.limits.fitting.slow_blocks;
     for (const Observation& seen : recorded) runs.push_back(seen.averaged(blocks));
-    fitted = refit(trial, all, runs, trial.fit.best.runs);
+    fitted = all.refit(trial, runs, trial.fit.best.runs);
   }
 };
 
@@ -125,7 +119,7 @@ double expected_lead(const Trial& truth, const Rival& rival, const Candidates& a
     starts.push_back(starts.front());
     starts.back().initial = start;
     const Trial both =
-        refit(rival.fitted, all, runs, starts, {.windows = all.limits.fitting.added_windows});
+        all.refit(rival.fitted, runs, starts, {.windows = all.limits.fitting.added_windows});
     if (!both.fit.converged) return not_known;
     const double more =
         both.fit.chi2 - rival.fitted.fit.chi2;  // includes the cost of shifted priors
@@ -160,7 +154,7 @@ const Trial* best_with_rival(const std::string& kind, const std::string& rival, 
                              const std::vector<Trial>& trials, const Candidates& all) {
   const auto labels_of = [&](const Trial& t) {
     std::multiset<std::string> kinds;
-    for (const size_t c : t.candidates) kinds.insert(all[c].label);
+    for (const size_t c : t.candidates) kinds.insert(all[c].name);
     return kinds;
   };
   std::multiset<std::string> wanted = labels_of(chosen);

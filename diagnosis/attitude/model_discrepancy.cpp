@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/model_discrepancy.h"
+#include "diagnosis/attitude/answer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,6 @@
 #include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
 #include "core/text/format.h"
-#include "diagnosis/attitude/cross_validation.h"
-#include "diagnosis/attitude/domain.h"
-#include "diagnosis/attitude/holdout.h"
-#include "diagnosis/attitude/textbook_laws.h"
 
 namespace photorque {
 namespace {
@@ -90,10 +86,9 @@ class Contest {
           size_t segments, int threads)
       : answer_(answer),
         limits_(answer.all.limits.discrepancy),
-        domain_(answer.all),
         train_(data.train),
         held_(data.held),
-        segments_(domain_, data.train, data.held, segments, threads) {
+        segments_(answer.all, data.train, data.held, segments, threads) {
     for (const size_t i : which) contenders_.push_back(contender(answer_.trials[i]));
   }
 
@@ -134,7 +129,7 @@ class Contest {
       const bool is_exchanged = other.trial.candidates.size() == best.trial.candidates.size() &&
                                 theirs.size() == 1 && theirs[0] != best.trial.candidates[which];
       if (is_exchanged && is_as_good(other, best)) {
-        names.insert(answer_.all[theirs[0]].label);
+        names.insert(answer_.all[theirs[0]].name);
       }
     }
     return {names.begin(), names.end()};
@@ -149,14 +144,14 @@ class Contest {
       std::ranges::sort(ours);
       if (std::ranges::includes(theirs, ours) || !is_as_good(other, best)) continue;
       if (theirs.empty()) continue;
-      sets.insert(joined_text(theirs, " + ", [&](size_t c) { return answer_.all[c].label; }));
+      sets.insert(joined_text(theirs, " + ", [&](size_t c) { return answer_.all[c].name; }));
     }
     return {sets.begin(), sets.end()};
   }
 
  private:
   Contender contender(const Trial& trial) const {
-    const Trial held = domain_.predict(trial, held_);
+    const Trial held = answer_.all.predict(trial, held_);
     const double chi2 = std::isnan(held.fit.chi2) ? inference::infinity : held.fit.chi2;
     return {trial, segments_.chi2(trial), chi2, static_cast<double>(held.fit.samples)};
   }
@@ -264,12 +259,12 @@ class Contest {
   Trial trial_without(const Trial& trial, size_t which) const {
     // Removing this candidate may move the other parameters far.
     const inference::Effort growing{.windows = answer_.all.limits.fitting.diverged_windows};
-    return domain_.assemble(trial, inference::members_of(terms_of(trial), which), train_, growing);
+    return answer_.all.assemble(trial, inference::members_of(answer_.all.terms_of(trial), which),
+                                train_, growing);
   }
 
   const Answer& answer_;
   const Thresholds::Discrepancy& limits_;
-  AttitudeDomain domain_;
   const std::vector<Observation>&train_, &held_;
   CrossValidation segments_;
   std::vector<Contender> contenders_;
@@ -288,7 +283,7 @@ Trial refit_with_discrepancy(const Trial& named, const Candidates& all, const No
   };
   for (int round = 0; round < most_rounds; ++round) {
     use_rest(result.fit, own, Remainder::white, parts, data);
-    const Trial again = refit(result, all, data.train, result.fit.best.runs);
+    const Trial again = all.refit(result, data.train, result.fit.best.runs);
     if (!std::isfinite(again.fit.chi2) || !again.objection.empty() ||
         !(held_chi2(again) < 0.9 * held_chi2(result))) {
       break;
@@ -296,7 +291,7 @@ Trial refit_with_discrepancy(const Trial& named, const Candidates& all, const No
     result = again;
   }
   use_rest(result.fit, own, Remainder::correlated, parts, data);
-  const Trial again = refit(result, all, data.train, result.fit.best.runs);
+  const Trial again = all.refit(result, data.train, result.fit.best.runs);
   return std::isfinite(again.fit.chi2) ? again : result;
 }
 
@@ -331,12 +326,11 @@ Answer sets_of_laws(const Fit& nominal_fit, const Trial& found, const RecordedDa
                     const DiagnoseOptions& options, const Candidates& all) {
   Answer a;
   a.all = all;
-  const AttitudeDomain domain(a.all);
   const Trial stated = nominal_trial(nominal_fit, a.all);
   a.trials = fit_sets_of_brakes(stated, found, a.all, data, options.threads);
   a.trials.insert(a.trials.begin(), stated);
   for (Trial& t : a.trials) {
-    t.holdout_chi2_per_sample = domain.predict(t, data.held).fit.chi2_per_sample();
+    t.holdout_chi2_per_sample = all.predict(t, data.held).fit.chi2_per_sample();
   }
   a.decision.probability.resize(a.trials.size());
   return a;
@@ -347,8 +341,7 @@ Answer sets_of_laws(const Fit& nominal_fit, const Trial& found, const RecordedDa
 Answer sets_of_needed_laws(const Fit& nominal_fit, const Trial& laws, const RecordedData& data,
                            const NoiseLevels& own, const DiagnoseOptions& options,
                            const Candidates& all) {
-  const Trial found =
-      AttitudeDomain(all).refit(laws, data.train, laws.fit.best.runs, inference::Effort{});
+  const Trial found = all.refit(laws, data.train, laws.fit.best.runs);
   const Answer full = sets_of_laws(nominal_fit, found, data, options, all);
   const auto best =
       std::ranges::min_element(full.trials, {}, [](const Trial& t) { return t.fit.chi2; });

@@ -12,21 +12,12 @@
 #include "attitude/observation/heavy_tails.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/observation/noise_search.h"
+#include "attitude/recordings/cleaning.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/text/format.h"
-#include "diagnosis/attitude/holdout.h"
 
 namespace photorque {
-
-void set_noise(const NoiseLevels& noise, RecordedData& data) {
-  for_each_run(data, [&](Observation& seen) { seen.noise = noise; });
-}
-
-void set_noise(int channel, const ChannelNoise& noise, RecordedData& data) {
-  for_each_run(data, [&](Observation& seen) { seen.noise.set(channel, noise); });
-}
-
 namespace {
 
 // Minimum number of blocks of a segment: more than its initial conditions require.
@@ -148,7 +139,7 @@ void thin_repetitions(Observation& seen) {
       const size_t count = last - first;
       for (size_t k = 0; count > most && k < count; ++k) {
         if (k * most / count == (k + 1) * most / count) {
-          drop_reading(channel, read[first + k], seen);
+          seen.rows_in(read[first + k], channel) = 0.0;
         }
       }
       first = last;
@@ -168,6 +159,13 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
     Segments segments = observe_segments(r.recording, r.name, platform, options.max_blocks);
     MotionModel::refuse_rows_far_apart(segments.all.front(), nominal.model);
     warn_of_omitted_rows(r.name, segments, warnings);
+    if (const int64_t rows = r.recording.report.isolated_rows; rows > 0) {
+      warnings.push_back(r.name + ": rows at an end beyond a jump of the clock: " +
+                         std::to_string(rows) + " left out");
+    }
+    if (r.recording.report.held_readings > 0) {
+      warnings.push_back(r.name + ": " + held_readings_text(r.recording.report));
+    }
     if (r.recording.report.has_decimal_commas) {
       warnings.push_back(r.name + ": its numbers have decimal commas, read as points");
     }
@@ -221,10 +219,11 @@ size_t cut_at(const Observation& seen, double fraction) {
   return reading.empty() ? of(seen.blocks()) : reading[of(reading.size())];
 }
 
-// Holds out the end of a recording in one piece. Of many segments, every (1/fraction)-th is held
+// Holds out the last quarter of a recording in one piece. Of many segments, every fourth is held
 // out, so that held-out and fitted data cover equal times and conditions.
-void hold_out(std::vector<Observation> segments, double fraction, RecordedData& data) {
-  const auto every = static_cast<size_t>(std::lround(1.0 / fraction));
+void hold_out(std::vector<Observation> segments, RecordedData& data) {
+  constexpr double fraction = 0.25;
+  constexpr size_t every = 4;
   for (size_t i = 0; i < segments.size(); ++i) {
     Observation& seen = segments[i];
     if (segments.size() >= every) {
@@ -255,57 +254,6 @@ NoiseLevels noise_of(const Sensors& sensors, const std::vector<Observation>& run
   }
   return noise;
 }
-
-}  // namespace
-
-RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
-                       const std::vector<NamedRecording>& holdouts,
-                       const DiagnoseOptions& options) {
-  RecordedData data;
-  for (auto& segments : observe_all(recordings, nominal, options, data.warnings)) {
-    if (holdouts.empty()) {
-      hold_out(std::move(segments), options.holdout_fraction, data);
-    } else {
-      std::ranges::move(segments, std::back_inserter(data.train));
-    }
-  }
-  for (auto& segments : observe_all(holdouts, nominal, options, data.warnings)) {
-    std::ranges::move(segments, std::back_inserter(data.held));
-  }
-  set_noise(noise_of(nominal.sensors, data.train, data.warnings), data);
-  return data;
-}
-
-DataQuality quality_of(const std::vector<NamedRecording>& recordings,
-                       const std::vector<NamedRecording>& holdouts, const RecordedData& data) {
-  DataQuality q;
-  for (const auto* group : {&recordings, &holdouts}) {
-    for (const NamedRecording& r : *group) {
-      const RecordingReport& report = r.recording.report;
-      q.rows += report.rows_read;
-      q.used += report.rows_kept;
-      q.rejected["malformed_row"] += report.malformed_rows;
-      q.rejected["no_time"] += report.rows_without_time;
-      q.rejected["repeated_time"] += report.repeated_times;
-      q.rejected["backward_time"] += report.backward_times;
-      q.rejected["outlier"] += report.outlier_cells;
-      q.rejected["gap"] += static_cast<int64_t>(report.gaps.size());
-      q.rejected["empty_cell"] += report.empty_cells;
-      q.rejected["unreadable_cell"] += report.unreadable_cells;
-      q.rejected["bad_quaternion"] += report.bad_quaternions;
-      q.repaired["flipped_quaternion"] += report.flipped_quaternions;
-      for (const RecordingReport::Gap& gap : report.gaps) {
-        q.max_gap_s = std::max(q.max_gap_s, gap.to_s - gap.from_s);
-      }
-    }
-  }
-  q.rejected["outlier"] += data.outliers;
-  q.median_interval_s = recordings.front().recording.report.median_interval_s;
-  q.jitter_s = recordings.front().recording.report.jitter_s;
-  return q;
-}
-
-namespace {
 
 InstrumentFinding level_finding(int k, const FoundNoise& found, double stated) {
   const double unit = k < 3 ? arcsecond_rad : 1.0;
@@ -398,7 +346,81 @@ bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData&
   return changed || robustified;
 }
 
+// Reports the largest deviation of the bias from its mean for each axis.
+void report_bias_drift(const BiasHistory& history, std::vector<InstrumentFinding>& findings) {
+  const std::string name = std::filesystem::path(history.recording).filename().string();
+  for (int axis = 0; axis < 3; ++axis) {
+    size_t at = 0;
+    for (size_t k = 1; k < history.time_s.size(); ++k) {
+      if (std::abs(history.bias_rad_s[k][axis]) > std::abs(history.bias_rad_s[at][axis])) at = k;
+    }
+    const double off = history.bias_rad_s[at][axis], sigma = history.sigma_rad_s[at][axis];
+    findings.push_back(
+        {channel_traits(3 + axis).name, "bias_drift_rad_s", off, sigma,
+         printed("the bias of the gyro about body %c drifts: in %s it is (%.3g ± %.1g) rad/s off "
+                 "its mean at %.0f s; the drift is removed",
+                 'x' + axis, name.c_str(), off, sigma, history.time_s[at])});
+  }
+}
+
 }  // namespace
+
+void set_noise(const NoiseLevels& noise, RecordedData& data) {
+  for_each_run(data, [&](Observation& seen) { seen.noise = noise; });
+}
+
+void set_noise(int channel, const ChannelNoise& noise, RecordedData& data) {
+  for_each_run(data, [&](Observation& seen) { seen.noise.set(channel, noise); });
+}
+
+RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
+                       const std::vector<NamedRecording>& holdouts,
+                       const DiagnoseOptions& options) {
+  RecordedData data;
+  for (auto& segments : observe_all(recordings, nominal, options, data.warnings)) {
+    if (holdouts.empty()) {
+      hold_out(std::move(segments), data);
+    } else {
+      std::ranges::move(segments, std::back_inserter(data.train));
+    }
+  }
+  for (auto& segments : observe_all(holdouts, nominal, options, data.warnings)) {
+    std::ranges::move(segments, std::back_inserter(data.held));
+  }
+  set_noise(noise_of(nominal.sensors, data.train, data.warnings), data);
+  return data;
+}
+
+DataQuality quality_of(const std::vector<NamedRecording>& recordings,
+                       const std::vector<NamedRecording>& holdouts, const RecordedData& data) {
+  DataQuality q;
+  for (const auto* group : {&recordings, &holdouts}) {
+    for (const NamedRecording& r : *group) {
+      const RecordingReport& report = r.recording.report;
+      q.rows += report.rows_read;
+      q.used += report.rows_kept;
+      q.rejected["malformed_row"] += report.malformed_rows;
+      q.rejected["no_time"] += report.rows_without_time;
+      q.rejected["repeated_time"] += report.repeated_times;
+      q.rejected["backward_time"] += report.backward_times;
+      q.rejected["isolated_row"] += report.isolated_rows;
+      q.rejected["held_reading"] += report.held_readings;
+      q.rejected["outlier"] += report.outlier_cells;
+      q.rejected["gap"] += static_cast<int64_t>(report.gaps.size());
+      q.rejected["empty_cell"] += report.empty_cells;
+      q.rejected["unreadable_cell"] += report.unreadable_cells;
+      q.rejected["bad_quaternion"] += report.bad_quaternions;
+      q.repaired["flipped_quaternion"] += report.flipped_quaternions;
+      for (const RecordingReport::Gap& gap : report.gaps) {
+        q.max_gap_s = std::max(q.max_gap_s, gap.to_s - gap.from_s);
+      }
+    }
+  }
+  q.rejected["outlier"] += data.outliers;
+  q.median_interval_s = recordings.front().recording.report.median_interval_s;
+  q.jitter_s = recordings.front().recording.report.jitter_s;
+  return q;
+}
 
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data) {
   subtract_bias_drift(data);
@@ -443,27 +465,6 @@ bool estimate_noise_again(const Fit& explained, const Thresholds& limits, Record
   data = std::move(again);
   return true;
 }
-
-namespace {
-
-// Reports the largest deviation of the bias from its mean for each axis.
-void report_bias_drift(const BiasHistory& history, std::vector<InstrumentFinding>& findings) {
-  const std::string name = std::filesystem::path(history.recording).filename().string();
-  for (int axis = 0; axis < 3; ++axis) {
-    size_t at = 0;
-    for (size_t k = 1; k < history.time_s.size(); ++k) {
-      if (std::abs(history.bias_rad_s[k][axis]) > std::abs(history.bias_rad_s[at][axis])) at = k;
-    }
-    const double off = history.bias_rad_s[at][axis], sigma = history.sigma_rad_s[at][axis];
-    findings.push_back(
-        {channel_traits(3 + axis).name, "bias_drift_rad_s", off, sigma,
-         printed("the bias of the gyro about body %c drifts: in %s it is (%.3g ± %.1g) rad/s off "
-                 "its mean at %.0f s; the drift is removed",
-                 'x' + axis, name.c_str(), off, sigma, history.time_s[at])});
-  }
-}
-
-}  // namespace
 
 void subtract_bias_drift(RecordedData& data) {
   std::vector<const Observation*> pieces;

@@ -32,7 +32,8 @@ void for_each_run(Data& data, const Action& action) {
 void set_noise(const NoiseLevels& noise, RecordedData& data);
 void set_noise(int channel, const ChannelNoise& noise, RecordedData& data);
 
-// Checks conventions and reads the data; without holdouts the end of each recording is held out.
+// Checks conventions and reads the data; without holdouts the last quarter of each recording is
+// held out.
 RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
                        const std::vector<NamedRecording>& holdouts, const DiagnoseOptions& options);
 
@@ -55,5 +56,10 @@ bool estimate_noise_again(const Fit& explained, const Thresholds& limits, Record
 // Removes the drift from the gyro readings, keeps their mean, and reports it among the instruments.
 // Does nothing if a constant bias per recording suffices.
 void subtract_bias_drift(RecordedData& data);
+
+// Propagates a fitted model along other runs. Only initial conditions (initial state, instrument
+// biases within their stated uncertainty) are fitted to them.
+Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs,
+                    const Thresholds& limits);
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/refine.h"
+#include "diagnosis/attitude/answer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -272,7 +272,7 @@ Trial refined_in_time(const Trial& chosen, Candidates& all, const std::vector<Ob
     double duration_s = 0.0;
     for (const Observation& seen : runs) duration_s = std::max(duration_s, seen.time_s.back());
     // The evidence from other runs is a constant offset for all refinements.
-    Trial before = refit(chosen, all, runs, chosen.fit.best.runs);
+    Trial before = all.refit(chosen, runs, chosen.fit.best.runs);
     if (is_formula_that_explains(before, law, runs, all.limits)) return chosen;
     const double weighed = chosen.log_evidence - before.log_evidence;
     const size_t laws = all.size();

@@ -1,14 +1,10 @@
-#include "diagnosis/attitude/textbook_laws.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <ranges>
 
 #include "core/parallel.h"
-#include "diagnosis/attitude/domain.h"
-#include "diagnosis/attitude/laws_of_curve.h"
-#include "diagnosis/attitude/model_discrepancy.h"
+#include "diagnosis/attitude/answer.h"
 #include "inference/trials.h"
 
 namespace photorque {
@@ -42,11 +38,11 @@ std::optional<size_t> superfluous(const Trial& trial, const Candidates& all, dou
 
 // In short pieces friction and drag by several powers of the rate are nearly collinear: they fit
 // with opposite signs and diverge in longer pieces. Superfluous laws are therefore removed.
-Trial without_superfluous(Trial trial, const AttitudeDomain& domain, const Candidates& all,
-                          const std::vector<Observation>& runs, double needed = 2.0) {
+Trial without_superfluous(Trial trial, const Candidates& all, const std::vector<Observation>& runs,
+                          double needed = 2.0) {
   while (const std::optional<size_t> least = superfluous(trial, all, needed)) {
-    Trial fewer = domain.assemble(trial, inference::members_of(domain.terms_of(trial), *least),
-                                  runs, inference::until_convergence(all.limits));
+    Trial fewer = all.assemble(trial, inference::members_of(all.terms_of(trial), *least), runs,
+                               inference::until_convergence(all.limits));
     if (!std::isfinite(fewer.fit.chi2)) break;
     trial = std::move(fewer);
   }
@@ -54,18 +50,17 @@ Trial without_superfluous(Trial trial, const AttitudeDomain& domain, const Candi
 }
 
 // Fits the needed laws to pieces of increasing length. Short pieces give only rough values.
-Trial lengthened(const Trial& in_pieces, const inference::RunSet<AttitudeDomain>& pieces,
-                 const AttitudeDomain& domain, const Candidates& all,
-                 const std::vector<Observation>& runs) {
-  Trial found = without_superfluous(in_pieces, domain, all, pieces.runs);
+Trial lengthened(const Trial& in_pieces, const inference::RunSet<Candidates>& pieces,
+                 const Candidates& all, const std::vector<Observation>& runs) {
+  Trial found = without_superfluous(in_pieces, all, pieces.runs);
   for (const size_t count : std::views::reverse(all.limits.search.pieces)) {
     const std::vector<Observation> longer =
-        count < pieces.pieces ? domain.cut(runs, count) : std::vector<Observation>();
+        count < pieces.pieces ? all.cut(runs, count) : std::vector<Observation>();
     if (longer.empty()) continue;
-    Trial next = domain.refit(found, longer, domain.initial_conditions_from_data(found, longer),
-                              inference::until_convergence(all.limits));
+    Trial next = all.refit(found, longer, all.initial_conditions_from_data(found, longer),
+                           inference::until_convergence(all.limits));
     if (!std::isfinite(next.fit.chi2)) continue;
-    found = without_superfluous(std::move(next), domain, all, longer);
+    found = without_superfluous(std::move(next), all, longer);
   }
   return found;
 }
@@ -78,33 +73,31 @@ size_t most_readings(const std::vector<Observation>& runs) {
 
 // Pieces in which the nominal model stays near the readings. If it diverges in all usual pieces,
 // the shortest pieces that determine their initial conditions are returned.
-std::pair<inference::RunSet<AttitudeDomain>, Trial> near_short_pieces(
-    const AttitudeDomain& domain, const Trial& nominal, const std::vector<Observation>& runs,
-    const Thresholds& limits) {
-  auto near = inference::near_pieces(domain, nominal, runs);
-  const size_t count = most_readings(runs) / limits.search.min_readings_of_piece;
-  if (!inference::has_diverged(near.second, limits) || count <= near.first.pieces) return near;
-  inference::RunSet<AttitudeDomain> pieces{domain.cut(runs, count), count};
+std::pair<inference::RunSet<Candidates>, Trial> near_short_pieces(
+    const Candidates& all, const Trial& nominal, const std::vector<Observation>& runs) {
+  auto near = inference::near_pieces(all, nominal, runs);
+  const size_t count = most_readings(runs) / all.limits.search.min_readings_of_piece;
+  if (!inference::has_diverged(near.second, all.limits) || count <= near.first.pieces) return near;
+  inference::RunSet<Candidates> pieces{all.cut(runs, count), count};
   if (pieces.runs.empty()) return near;
-  Trial parted = domain.refit(nominal, pieces.runs,
-                              domain.initial_conditions_from_data(nominal, pieces.runs), {});
+  Trial parted =
+      all.refit(nominal, pieces.runs, all.initial_conditions_from_data(nominal, pieces.runs), {});
   return {std::move(pieces), std::move(parted)};
 }
 
 // Fits the laws to the whole recordings, starting from their strengths along the recorded curve.
 // Growing windows are used if a direct fit does not converge.
 std::optional<Trial> fit_from_curve(const Trial& nominal, const std::vector<size_t>& laws,
-                                    const AttitudeDomain& domain, const Candidates& all,
-                                    const std::vector<Observation>& runs) {
+                                    const Candidates& all, const std::vector<Observation>& runs) {
   const LawsOfCurve curve = laws_of_curve(nominal, all, laws, runs);
   if (curve.members.empty()) return std::nullopt;
-  const Trial stated = domain.with_initial_conditions(as_stated(nominal), curve.starts);
+  const Trial stated = all.with_initial_conditions(as_stated(nominal), curve.starts);
   std::optional<Trial> best;
   for (const std::vector<double>& windows :
        {std::vector<double>{1.0}, std::vector<double>{0.1, 0.3, 1.0}}) {
     inference::Effort effort = inference::until_convergence(all.limits);
     effort.windows = windows;
-    Trial trial = domain.assemble(stated, curve.members, runs, effort);
+    Trial trial = all.assemble(stated, curve.members, runs, effort);
     if (std::isfinite(trial.fit.chi2) && !(best && best->fit.chi2 <= trial.fit.chi2)) {
       best = std::move(trial);
     }
@@ -115,8 +108,7 @@ std::optional<Trial> fit_from_curve(const Trial& nominal, const std::vector<size
 
 // Fits all laws to short pieces, then to longer ones, finally to the whole recordings.
 std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<Start>& members,
-                                 const AttitudeDomain& domain, const Candidates& all,
-                                 const RecordedData& data) {
+                                 const Candidates& all, const RecordedData& data) {
   inference::Effort growing = inference::until_convergence(all.limits);
   growing.windows = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0};
   Trial found = nominal;
@@ -124,12 +116,12 @@ std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<
   const bool sees_angle = std::ranges::all_of(
       data.train, [](const Observation& seen) { return seen.has_some_attitude(); });
   if (sees_angle) {
-    const auto [pieces, parted] = near_short_pieces(domain, nominal, data.train, all.limits);
+    const auto [pieces, parted] = near_short_pieces(all, nominal, data.train);
     const Trial all_laws =
-        domain.assemble(parted, members, pieces.runs, inference::until_convergence(all.limits));
+        all.assemble(parted, members, pieces.runs, inference::until_convergence(all.limits));
     const auto in_the_whole = [&](const Trial& laws) {
-      return domain.refit(laws, data.train, domain.initial_conditions_from_data(laws, data.train),
-                          growing);
+      return all.refit(laws, data.train, all.initial_conditions_from_data(laws, data.train),
+                       growing);
     };
     // The fit to the whole recordings has a larger residual than the fit to pieces, but at most by
     // this factor.
@@ -140,7 +132,7 @@ std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<
     };
     found = in_the_whole(all_laws);
     if (!is_near()) {
-      Trial longer = in_the_whole(lengthened(all_laws, pieces, domain, all, data.train));
+      Trial longer = in_the_whole(lengthened(all_laws, pieces, all, data.train));
       if (!(found.fit.chi2 < longer.fit.chi2)) found = std::move(longer);
       if (!is_near() && !(found.fit.chi2 < useless * nominal.fit.chi2)) return std::nullopt;
     }
@@ -151,13 +143,13 @@ std::optional<Trial> fit_growing(const Trial& nominal, const inference::Members<
     std::erase_if(growing.windows, [&](double part) {
       return part < 1.0 && part * static_cast<double>(readings) < fewest_readings;
     });
-    found = domain.assemble(nominal, members, data.train, growing);
+    found = all.assemble(nominal, members, data.train, growing);
   }
   // Collinear laws with opposite signs hardly fit better than laws within physical bounds. With
   // rates alone they also follow any slow change, so no law below two standard errors is kept.
   if (!is_consistent_with_noise(found.fit, data)) {
     constexpr double hardly = 2.0;
-    Trial fewer = without_superfluous(found, domain, all, data.train, sees_angle ? 0.0 : 2.0);
+    Trial fewer = without_superfluous(found, all, data.train, sees_angle ? 0.0 : 2.0);
     const double most = sees_angle ? hardly * found.fit.chi2 : nominal.fit.chi2;
     if (fewer.fit.chi2 < most) found = std::move(fewer);
   }
@@ -174,21 +166,20 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
       !std::isfinite(nominal_fit.chi2)) {
     return std::nullopt;
   }
-  const AttitudeDomain domain(all);
   inference::Members<Start> members;
   for (size_t c = 0; c < all.size(); ++c) {
-    if (!all[c].is_linear() || all[c].empirical()) continue;
+    if (!all[c].is_linear || all[c].is_empirical) continue;
     const bool is_law = braking_power(all[c], model) || is_restoring(all[c], model) ||
                         all[c].effect.how.steady || all[c].start.stage == Stage::measurement;
-    if (!is_law || !all[c].has_linear_strength()) continue;
-    members.push_back({{c, domain.start_of(c)}, {}});
+    if (!is_law || !all[c].has_strength) continue;
+    members.push_back({{c, all.start_of(c)}, {}});
   }
   if (members.empty()) return std::nullopt;
   const Trial nominal = nominal_trial(nominal_fit, all);
   const std::optional<Trial> by_curve =
-      fit_from_curve(nominal, inference::candidates_of(members), domain, all, data.train);
+      fit_from_curve(nominal, inference::candidates_of(members), all, data.train);
   if (by_curve && is_consistent_with_noise(by_curve->fit, data)) return by_curve;
-  std::optional<Trial> found = fit_growing(nominal, members, domain, all, data);
+  std::optional<Trial> found = fit_growing(nominal, members, all, data);
   if (by_curve && by_curve->fit.chi2 < nominal_fit.chi2 &&
       !(found && found->fit.chi2 <= by_curve->fit.chi2)) {
     return by_curve;
@@ -199,19 +190,18 @@ std::optional<Trial> fit_textbook_laws(const Fit& nominal_fit, const Candidates&
 std::vector<Trial> fit_sets_of_brakes(const Trial& nominal, const Trial& found,
                                       const Candidates& all, const RecordedData& data,
                                       int threads) {
-  const AttitudeDomain domain(all);
   const AttitudeModel& model = found.fit.best.model;
   inference::Members<Start> others;
   std::map<double, inference::Member<Start>> brakes;  // by the power of the rate
   const auto power_of = [&](size_t c) -> std::optional<double> {
-    const auto power = all[c].is_linear() ? braking_power(all[c], model) : std::nullopt;
+    const auto power = all[c].is_linear ? braking_power(all[c], model) : std::nullopt;
     return power ? std::optional(0.5 * std::round(2.0 * *power)) : std::nullopt;
   };
   for (size_t c = 0; c < all.size(); ++c) {
-    const inference::Member<Start> brake{{c, domain.start_of(c)}, {}};
+    const inference::Member<Start> brake{{c, all.start_of(c)}, {}};
     if (const auto power = power_of(c)) brakes.emplace(*power, brake);
   }
-  for (const auto& term : domain.terms_of(found)) {
+  for (const auto& term : all.terms_of(found)) {
     const auto power = power_of(term.candidate);
     (power ? brakes[*power] : others.emplace_back()) = {term, {}};
   }
@@ -233,12 +223,12 @@ std::vector<Trial> fit_sets_of_brakes(const Trial& nominal, const Trial& found,
     inference::Members<Start> members = others;
     members.insert(members.end(), sets[i].begin(), sets[i].end());
     const inference::Effort growing{.windows = all.limits.fitting.diverged_windows};
-    trials[i] = domain.assemble(found, members, data.train, growing);
+    trials[i] = all.assemble(found, members, data.train, growing);
     const LawsOfCurve curve =
         laws_of_curve(nominal, all, inference::candidates_of(members), data.train);
     if (curve.members.size() != members.size()) return;
-    const Trial stated = domain.with_initial_conditions(as_stated(nominal), curve.starts);
-    Trial by_curve = domain.assemble(stated, curve.members, data.train, {});
+    const Trial stated = all.with_initial_conditions(as_stated(nominal), curve.starts);
+    Trial by_curve = all.assemble(stated, curve.members, data.train, {});
     if (by_curve.fit.chi2 < trials[i].fit.chi2) trials[i] = std::move(by_curve);
   });
   double best = inference::infinity;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "attitude/recordings/text_lines.h"
+#include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/median.h"
 #include "core/settings/settings.h"
@@ -105,28 +106,6 @@ std::vector<std::string> units_in(const std::vector<std::string>& cells) {
   return any ? cells : std::vector<std::string>();
 }
 
-// The cells of a line between blanks, a unit with its name: "Time ( s )", "x / m", "I in A".
-std::vector<std::string> split_at_names(std::string_view line) {
-  std::vector<std::string> cells;
-  bool joins = false;
-  for (const std::string_view word : words_of(line)) {
-    const bool is_link = word == "/" || word == "in";
-    const auto brackets = [&](const char* kind) {
-      return cells.empty() ? 0 : std::ranges::count_if(cells.back(), [&](char c) {
-        return std::string_view(kind).find(c) != std::string_view::npos;
-      });
-    };
-    const bool is_unit = word.starts_with('(') || word.starts_with('[');
-    if (!cells.empty() && (joins || is_link || is_unit || brackets("([") > brackets(")]"))) {
-      cells.back() += " " + std::string(word);
-    } else {
-      cells.emplace_back(word);
-    }
-    joins = is_link;
-  }
-  return cells;
-}
-
 struct Header {
   std::vector<std::string> cells;  // empty if there is another number of them than in a row
   bool is_split_otherwise = false;
@@ -177,7 +156,10 @@ Header names_in_line(const NumberedLine& line, char separator, size_t width) {
       at = std::min(text.find_first_not_of(' ', end), text.size());
     }
   }
-  if (cells.size() != width) cells = split_at_names(text);
+  if (cells.size() != width) {
+    parts = names_between_blanks(text);
+    cells.assign(parts.begin(), parts.end());
+  }
   if (cells.size() != width && !longer.empty()) {
     longer.resize(width);
     if (std::ranges::any_of(longer, has_unit)) cells = std::move(longer);
@@ -308,8 +290,28 @@ std::optional<FileHead> table_in(const std::vector<NumberedLine>& lines, char se
   return std::nullopt;
 }
 
+bool changes_sign(const std::vector<double>& values) {
+  return !values.empty() && std::ranges::min(values) < 0.0 && std::ranges::max(values) > 0.0;
+}
+
+// An angle in degrees if it swings over more than a turn of 2π rad.
+const char* angle_name(const std::vector<double>& values) {
+  const bool is_large =
+      changes_sign(values) && std::ranges::max(values) - std::ranges::min(values) > 2.0 * pi;
+  return is_large ? "angle_deg" : "angle_rad";
+}
+
+// The finite numbers of a column.
+std::vector<double> column_of(const FileHead& table, size_t column) {
+  std::vector<double> values;
+  for (const auto& row : table.rows) {
+    if (std::isfinite(row[column])) values.push_back(row[column]);
+  }
+  return values;
+}
+
 // Proposed names for a table without a header. The increasing column is the time. One other column
-// is an angle, two are coordinates; more columns get numbers, of which a long list shows the last.
+// is an angle, two are coordinates; more columns get numbers.
 std::string proposed_names(const FileHead& table) {
   const size_t width = table.rows.front().size();
   size_t time = 0;
@@ -318,16 +320,11 @@ std::string proposed_names(const FileHead& table) {
   }
   const std::string clock = clock_unit(table, time) == "us" ? "t_us" : "t_s";
   std::vector<const char*> others;
-  if (width == 2) others = {"angle_rad"};
+  if (width == 2) others = {angle_name(column_of(table, 1 - std::min<size_t>(time, 1)))};
   if (width == 3) others = {"x_m", "y_m"};
-  constexpr size_t short_list = 8;
   std::string names;
   size_t next = 0;
   for (size_t k = 0; k < width; ++k) {
-    if (width > short_list && k > 0 && k + 1 < width && k != time) {
-      if (!names.ends_with("…")) names += ",…";
-      continue;
-    }
     if (k > 0) names += ',';
     if (k == time) {
       names += clock;
@@ -372,13 +369,17 @@ FileHead head_of(const std::filesystem::path& path, const RecordingOptions& read
     }
     if (unnamed && !shape.has_texts) throw without_header(path, *unnamed);
   }
-  const auto is_number = [](const NumberedLine& line) {
-    return !std::isnan(number_of_cell(trimmed(line.text), ';').value_or(NAN));
-  };
-  if (2 * std::ranges::count_if(lines, is_number) > static_cast<std::ptrdiff_t>(lines.size())) {
+  std::vector<double> numbers;  // of lines with one number
+  for (const NumberedLine& line : lines) {
+    const double number = number_of_cell(trimmed(line.text), ';').value_or(NAN);
+    if (!std::isnan(number)) numbers.push_back(number);
+  }
+  if (2 * numbers.size() > lines.size()) {
+    // A swing is an angle, a speed keeps its sign.
+    const std::string name = changes_sign(numbers) ? angle_name(numbers) : "rate_rad_s";
     throw InputError({path.string()}, "header", "one column of numbers",
                      "a time beside them, or the readings per second; " +
-                         command_with_names(path, "rate_rad_s --rate-Hz 10"));
+                         command_with_names(path, name + " --rate-Hz 10"));
   }
   throw InputError({path.string()}, "header",
                    lines.empty() ? "an empty file"

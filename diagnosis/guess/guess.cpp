@@ -8,6 +8,7 @@
 #include "attitude/recordings/aem.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
 #include "diagnosis/guess/file_head.h"
@@ -15,7 +16,9 @@
 #include "diagnosis/light/module/nominal.h"
 #include "photovoltaics/cell/cell.h"
 #include "photovoltaics/fit/curve_text.h"
+#include "photovoltaics/fit/curve_words.h"
 #include "photovoltaics/fit/fit.h"
+#include "sources/photometry/file.h"
 
 namespace photorque {
 namespace {
@@ -192,6 +195,41 @@ void guess_module(TomlDocument& document, const std::vector<fs::path>& recording
   document.comment("CONFIRM: no bypass diodes are stated (bypass_every = cells under one).");
 }
 
+namespace {
+
+// Throws InputError for the voltage or the current of a curve in an unknown unit.
+void refuse_curve_units(const fs::path& file, const RecordingOptions& reading,
+                        const std::vector<GuessedColumn>& columns) {
+  for (const GuessedColumn& c : columns) {
+    const curve_text::Named name = curve_text::named(c.in_file);
+    const bool is_voltage = name.column == curve_text::voltage,
+               is_needed = is_voltage || name.column == curve_text::current;
+    if (!is_needed || name.unknown_unit.empty() || name.match != curve_text::Named::plain) continue;
+    const std::string command = command_for_columns(file, reading, columns);
+    if (command.empty()) continue;
+    throw InputError({file.string(), head_of(file, reading).line}, c.in_file,
+                     "the unit " + in_quotes(name.unknown_unit),
+                     (is_voltage ? "V or mV; or " : "A, mA, µA or mA/cm²; or ") + command);
+  }
+}
+
+// Throws InputError for a lamp file.
+void refuse_lamp_file(const fs::path& file) {
+  constexpr uint64_t largest_bytes = 10'000'000;
+  std::string format;
+  try {
+    format = read_photometric(read_file(file, largest_bytes), file.string()).format;
+  } catch (const std::runtime_error&) {
+    return;  // another file
+  }
+  throw InputError(
+      {file.string()}, "", "a lamp file (" + format + ")",
+      "a recording: photorque trace reads lamp files, as [[source]] kind = \"ies\" of an "
+      "experiment");
+}
+
+}  // namespace
+
 std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
                              const std::filesystem::path& folder, RecordingOptions reading) {
   if (recordings.empty()) {
@@ -221,6 +259,7 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
     }
     columns = guess_columns(first, with_header);
   } catch (const InputError& error) {
+    refuse_lamp_file(first);
     refusal = error;
   }
   const bool is_lit = std::ranges::any_of(columns, [](const GuessedColumn& c) {
@@ -228,6 +267,7 @@ std::string guess_experiment(const std::vector<std::filesystem::path>& recording
   });
   const bool is_of_motion =
       is_aem(first) || (has_motion(columns) && (reading.rate_Hz || (has_time(columns) && !is_lit)));
+  if (!is_of_motion) refuse_curve_units(first, with_header, columns);
   for (RecordingOptions how : {reading, with_header}) {
     if (is_of_motion) break;
     if (!light_kind_of(first, how))

@@ -44,13 +44,17 @@ struct GuessedColumn {
   std::string because = {};
   // The channel that it shares with other columns, by its unit alone; `channel` is then empty.
   std::string shared = {};
+  // The unknown unit for which it is left out; empty otherwise.
+  std::string unknown_unit = {};
 };
 
 // Columns of a CSV file. Its header is `reading.header` or the last line before the first row of
 // numbers that has as many cells. A clock without a unit in its name is recognised by its steps;
 // without a clock, a column that counts frames has the channel "frame". For a CCSDS AEM: its
 // quaternion. Throws InputError with the remedy for a file without such a header, with decimal
-// commas, in UTF-16, or with an angle, a rate, a coordinate or a time in an unknown unit.
+// commas, in UTF-16, or with an angle, a rate, a coordinate or a time in an unsuitable unit. Beside
+// a time and another motion, a column in an unknown unit is left out, unless it is a component of
+// the same vector.
 std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path,
                                          const RecordingOptions& reading = {});
 
@@ -59,6 +63,12 @@ bool has_motion(const std::vector<GuessedColumn>& columns);
 
 // Whether one of them is a time.
 bool has_time(const std::vector<GuessedColumn>& columns);
+
+// The command that names all columns of a file, for messages: by their channels, one voltage and
+// one current, the time by its rise, and column_3 for others. Empty if that is neither a motion
+// over time nor a curve.
+std::string command_for_columns(const std::filesystem::path& path, const RecordingOptions& reading,
+                                const std::vector<GuessedColumn>& columns);
 
 // The names of the columns in quotes, for messages.
 std::string names_in(const std::filesystem::path& path, const RecordingOptions& reading);

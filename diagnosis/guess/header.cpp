@@ -100,60 +100,88 @@ std::string ascii_of(std::string_view text, bool of_unit) {
   return ascii;
 }
 
+// Spellings of a unit, with commas between them.
 struct Spelling {
-  const char *suffix, *words;  // words between blanks
+  const char *suffix, *dimension, *words;
 };
 
-// The suffix of the unit that is written so; empty if it is not in the table.
-std::string spelled(const std::string& word, std::span<const Spelling> table) {
+constexpr Spelling spellings[] = {
+    {"rpm", "angular rate", "rpm,upm"},
+    {"rev_s", "angular rate", "rps"},
+    {"deg_s", "angular rate", "dps"},
+    {"mdeg_s", "angular rate", "mdps"},
+    {"", "angle", "gon,mgon,count,counts,tick,ticks,lsb"},
+    {"", "length", "au"},
+    {"rev_s", "frequency", "hz,hertz"},
+    {"m_s2", "acceleration", "m/s2,m/s/s,m s-2,ms-2"},
+    {"", "acceleration", "g,mg"},
+    {"", "angular acceleration", "rad/s2,rad/s/s,deg/s2,deg/s/s,rad s-2,deg s-2"},
+    {"mph", "speed", "mph"},
+    {"km_h", "speed", "kmh,kph"},
+    {"", "speed", "knots"},
+    {"", "power", "watt,watts,milliwatt,milliwatts"},
+    {"", "resistance", "ohm,ohms,kohm,mohm"},
+    {"", "illuminance", "lux,lx,klx"},
+    {"V", "voltage", "volt,volts,voltios"},
+    {"mV", "voltage", "millivolt,millivolts"},
+    {"A", "current", "amp,amps,ampere,amperes,amperios"},
+    {"mA", "current", "milliampere,milliamps"},
+    {"s", "time",
+     "s,sec,secs,second,seconds,sek,sekunde,sekunden,seconde,secondes,seg,segs,segundo,segundos,"
+     "secondo,secondi"},
+    {"ms", "time",
+     "ms,msec,msecs,millis,millisecond,milliseconds,millisekunde,millisekunden,milliseconde,"
+     "millisecondes,milisegundo,milisegundos,millisecondo,millisecondi,milissegundo,"
+     "milissegundos"},
+    {"us", "time",
+     "us,usec,usecs,micros,microsecond,microseconds,mikrosekunde,mikrosekunden,microseconde,"
+     "microsecondes,microsegundo,microsegundos,microsecondo,microsecondi,microssegundos"},
+    {"min", "time", "min,mins,mn,minute,minutes,minuten,minuto,minutos,minuti"},
+    {"h", "time", "h,hr,hrs,hour,hours,std,stunde,stunden,heure,heures,hora,horas,ora,ore"},
+    {"rad", "angle",
+     "rad,rads,radian,radians,radiant,radianten,radianes,radianti,radiano,radianos,bogenmass"},
+    {"mrad", "angle", "mrad,mrads,milliradian,milliradians"},
+    {"urad", "angle", "urad,urads,microradian,microradians"},
+    {"mdeg", "angle", "mdeg,mdegs,millideg,millidegs,millidegree,millidegrees"},
+    {"deg", "angle",
+     "deg,degs,degree,degrees,grad,graden,grader,stopni,grados,grado,gradi,graus,grau,degre,"
+     "degres"},
+    {"arcsec", "angle", "arcsec,arcsecs,arcsecond,arcseconds,bogensekunde,bogensekunden"},
+    {"arcmin", "angle", "arcmin,arcmins,arcminute,arcminutes,bogenminute,bogenminuten"},
+    {"rev", "angle",
+     "rev,revs,revolution,revolutions,turn,turns,umdrehung,umdrehungen,vuelta,vueltas"},
+    {"m", "length", "m,meter,meters,metre,metres,metro,metros,metri"},
+    {"cm", "length",
+     "cm,centimeter,centimeters,centimetre,centimetres,zentimeter,centimetros,centimetri"},
+    {"mm", "length", "mm,millimeter,millimeters,millimetre,millimetres,milimetros,millimetri"},
+    {"um", "length", "um,micron,microns"},
+    {"km", "length", "km,kilometer,kilometers,kilometre,kilometres,kilometros,chilometri"}};
+
+// The case of these letters determines the unit.
+constexpr Spelling cased[] = {
+    {"T", "magnetic field", "T"},   {"uT", "magnetic field", "uT"},
+    {"nT", "magnetic field", "nT"}, {"", "magnetic field", "mT,G,gauss,Gauss"},
+    {"V", "voltage", "V"},          {"mV", "voltage", "mV"},
+    {"A", "current", "A"},          {"mA", "current", "mA"},
+    {"nm", "length", "nm"},         {"", "power", "W,mW,uW,kW,Wh,J"}};
+
+constexpr std::string_view turns =
+    "r,u,rev,revs,revolution,revolutions,rot,rotation,rotations,turn,turns,umdr,umd,umdrehung,"
+    "umdrehungen,tr,trs,tour,tours,giro,giri,giros,vuelta,vueltas,volta,voltas,revolucion,"
+    "revoluciones,rotacoes,rotacao,rotazioni,cycle,cycles";
+
+std::optional<HeaderUnit> spelled(std::string_view word, std::span<const Spelling> table) {
   for (const Spelling& one : table) {
-    if ((" " + std::string(one.words) + " ").find(" " + word + " ") != std::string::npos) {
-      return one.suffix;
-    }
+    if (is_listed(word, one.words)) return HeaderUnit{one.suffix, one.dimension};
   }
-  return "";
+  return std::nullopt;
 }
 
-constexpr Spelling times[] = {
-    {"s",
-     "s sec secs second seconds sek sekunde sekunden seconde secondes seg segs segundo "
-     "segundos secondo secondi"},
-    {"ms",
-     "ms msec msecs millis millisecond milliseconds millisekunde millisekunden milliseconde "
-     "millisecondes milisegundo milisegundos millisecondo millisecondi milissegundo "
-     "milissegundos"},
-    {"us",
-     "us usec usecs micros microsecond microseconds mikrosekunde mikrosekunden microseconde "
-     "microsecondes microsegundo microsegundos microsecondo microsecondi microssegundos"},
-    {"min", "min mins mn minute minutes minuten minuto minutos minuti"},
-    {"h", "h hr hrs hour hours std stunde stunden heure heures hora horas ora ore"}};
-
-constexpr Spelling angles[] = {
-    {"rad",
-     "rad rads radian radians radiant radianten radianes radianti radiano radianos "
-     "bogenmass"},
-    {"mrad", "mrad mrads milliradian milliradians"},
-    {"urad", "urad urads microradian microradians"},
-    {"mdeg", "mdeg mdegs millideg millidegs millidegree millidegrees"},
-    {"deg",
-     "deg degs degree degrees grad graden grader stopni grados grado gradi graus grau degre "
-     "degres"},
-    {"arcsec", "arcsec arcsecs arcsecond arcseconds bogensekunde bogensekunden"},
-    {"arcmin", "arcmin arcmins arcminute arcminutes bogenminute bogenminuten"},
-    {"rev", "rev revs revolution revolutions turn turns umdrehung umdrehungen vuelta vueltas"}};
-
-constexpr Spelling lengths[] = {
-    {"m", "m meter meters metre metres metro metros metri"},
-    {"cm", "cm centimeter centimeters centimetre centimetres zentimeter centimetros centimetri"},
-    {"mm", "mm millimeter millimeters millimetre millimetres milimetros millimetri"},
-    {"um", "um micron microns"},
-    {"km", "km kilometer kilometers kilometre kilometres kilometros chilometri"}};
-
-constexpr Spelling turns[] = {
-    {"rev",
-     "r u rev revs revolution revolutions rot rotation rotations turn turns umdr umd "
-     "umdrehung umdrehungen tr trs tour tours giro giri giros vuelta vueltas volta voltas "
-     "revolucion revoluciones rotacoes rotacao rotazioni cycle cycles"}};
+// The suffix of the unit of this dimension that is written so; empty if there is none.
+std::string suffix_of(const std::string& word, const char* dimension) {
+  const auto unit = spelled(word, spellings);
+  return unit && unit->dimension == dimension ? unit->suffix : "";
+}
 
 // A unit of this quantity. Channels can have it if keys can.
 HeaderUnit unit_if_known(const std::string& suffix, const std::string& dimension) {
@@ -164,15 +192,15 @@ HeaderUnit unit_if_known(const std::string& suffix, const std::string& dimension
 
 // The unit "above per below": radians per second for "rad" and "s".
 std::optional<HeaderUnit> ratio(const std::string& above, const std::string& below) {
-  const std::string time = spelled(below, times), angle = spelled(above, angles);
+  const std::string time = suffix_of(below, "time"), angle = suffix_of(above, "angle");
   if (time.empty()) return std::nullopt;
   if (!angle.empty() && angle != "rev") return unit_if_known(angle + "_" + time, "angular rate");
-  if (!spelled(above, turns).empty() || above == "1") {
+  if (is_listed(above, turns) || above == "1") {
     if (time == "min") return HeaderUnit{"rpm", "angular rate"};
     if (time == "s" && above == "1") return HeaderUnit{"", "per second"};
     return HeaderUnit{time == "s" ? "rev_s" : "", "angular rate"};
   }
-  const std::string length = spelled(above, lengths);
+  const std::string length = suffix_of(above, "length");
   if (!length.empty()) return unit_if_known(length + "_" + time, "speed");
   return std::nullopt;
 }
@@ -212,53 +240,11 @@ std::optional<HeaderUnit> with_exponent(std::string plain) {
 }  // namespace
 
 std::optional<HeaderUnit> unit_written(std::string_view text) {
-  using Units = std::vector<std::pair<HeaderUnit, std::vector<std::string>>>;
-  // The case of these letters determines the unit.
-  static const Units cased = {
-      {{"T", "magnetic field"}, {"T"}},   {{"uT", "magnetic field"}, {"uT"}},
-      {{"nT", "magnetic field"}, {"nT"}}, {{"", "magnetic field"}, {"mT", "G", "gauss", "Gauss"}},
-      {{"V", "voltage"}, {"V"}},          {{"mV", "voltage"}, {"mV"}},
-      {{"A", "current"}, {"A"}},          {{"mA", "current"}, {"mA"}},
-      {{"nm", "length"}, {"nm"}},         {{"", "power"}, {"W", "mW", "uW", "kW", "Wh", "J"}}};
-  static const Units whole = {
-      {{"rpm", "angular rate"}, {"rpm", "upm"}},
-      {{"rev_s", "angular rate"}, {"rps"}},
-      {{"deg_s", "angular rate"}, {"dps"}},
-      {{"mdeg_s", "angular rate"}, {"mdps"}},
-      {{"", "angle"}, {"gon", "mgon", "count", "counts", "tick", "ticks", "lsb"}},
-      {{"", "length"}, {"au"}},
-      {{"rev_s", "frequency"}, {"hz", "hertz"}},
-      {{"m_s2", "acceleration"}, {"m/s2", "m/s/s", "m s-2", "ms-2"}},
-      {{"", "acceleration"}, {"g", "mg"}},
-      {{"", "angular acceleration"},
-       {"rad/s2", "rad/s/s", "deg/s2", "deg/s/s", "rad s-2", "deg s-2"}},
-      {{"mph", "speed"}, {"mph"}},
-      {{"km_h", "speed"}, {"kmh", "kph"}},
-      {{"", "speed"}, {"knots"}},
-      {{"", "power"}, {"watt", "watts", "milliwatt", "milliwatts"}},
-      {{"", "resistance"}, {"ohm", "ohms", "kohm", "mohm"}},
-      {{"", "illuminance"}, {"lux", "lx", "klx"}},
-      {{"V", "voltage"}, {"volt", "volts", "voltios"}},
-      {{"mV", "voltage"}, {"millivolt", "millivolts"}},
-      {{"A", "current"}, {"amp", "amps", "ampere", "amperes", "amperios"}},
-      {{"mA", "current"}, {"milliampere", "milliamps"}}};
   text = trimmed(text);
   if (text.starts_with("in ")) text.remove_prefix(3);  // "Voltage (in V)"
   const std::string as_written(trimmed(ascii_of(text, true))), plain = plain_unit(text);
-  const auto unit_in = [](const Units& units, const std::string& word) -> const HeaderUnit* {
-    for (const auto& [unit, words] : units) {
-      if (std::ranges::find(words, word) != words.end()) return &unit;
-    }
-    return nullptr;
-  };
-  if (const HeaderUnit* unit = unit_in(cased, as_written)) return *unit;
-  if (const HeaderUnit* unit = unit_in(whole, plain)) return *unit;
-  const std::pair<std::span<const Spelling>, const char*> spellings[] = {
-      {times, "time"}, {angles, "angle"}, {lengths, "length"}};
-  for (const auto& [table, dimension] : spellings) {
-    const std::string suffix = spelled(plain, table);
-    if (!suffix.empty()) return HeaderUnit{suffix, dimension};
-  }
+  if (const auto unit = spelled(as_written, cased)) return unit;
+  if (const auto unit = spelled(plain, spellings)) return unit;
   const size_t slash = plain.find('/');
   if (slash != std::string::npos && plain.find('/', slash + 1) == std::string::npos) {
     return ratio(plain.substr(0, slash), plain.substr(slash + 1));

@@ -11,11 +11,11 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/format.h"
+#include "core/text/parse.h"
 #include "diagnosis/guess/file_head.h"
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/guess/header.h"
 #include "diagnosis/guess/places.h"
-#include "diagnosis/guess/rates.h"
 
 namespace photorque {
 namespace {
@@ -293,8 +293,7 @@ bool infer_from_scalars(Machine& m) {
   if (m.has("rate_magnitude_rad_s")) {
     m.why =
         "only the magnitude of the rate: assumed to be a free body (thrown or in orbit). On a "
-        "bearing "
-        "it is \"tabletop\".";
+        "bearing it is \"tabletop\", which requires mass_kg.";
     m.observe_as(Topology::free);
     return true;
   }
@@ -327,8 +326,7 @@ void infer_machine(Machine& m) {
   if (!m.sees_attitude() && !m.has_three_rates()) return infer_one_axis(m);
   m.why =
       "three rates without attitude: assumed to be a free body (thrown, in orbit, on gimbals). On "
-      "a "
-      "bearing or with a weight off the centre it is \"tabletop\".";
+      "a bearing or with a weight off the centre it is \"tabletop\", which requires mass_kg.";
   if (!m.sees_attitude()) {
     m.observe_as(Topology::free);
     const bool is_held = has_no_mean_rate(m.runs);
@@ -394,6 +392,10 @@ RecordingOptions options_of(const std::vector<GuessedColumn>& columns,
 
 void add_columns(TomlDocument& document, const std::vector<GuessedColumn>& columns) {
   for (const GuessedColumn& c : columns) {
+    if (!c.unknown_unit.empty()) {
+      document.comment("CONFIRM: the column " + in_quotes(c.in_file) + " is left out: its unit " +
+                       in_quotes(c.unknown_unit) + " is unknown.");
+    }
     if (c.channel.empty() || c.channel == c.in_file) continue;
     if (!c.is_sure) document.comment("CONFIRM: " + c.because + " the next column.");
     document.set(document.table("recording"), "columns." + c.channel, {c.in_file});
@@ -453,7 +455,11 @@ void require_motion(const fs::path& path, const std::vector<GuessedColumn>& colu
   if (!has_motion(columns) && in_counts != columns.end()) {
     throw InputError({path.string()}, in_counts->in_file, "counts", counts_of_encoder);
   }
-  throw InputError({path.string()}, "header", found + names_in(path, reading), expected);
+  const bool is_one_body = expected.find("--columns") != std::string::npos;
+  const std::string command =
+      is_one_body || counts ? "" : command_for_columns(path, reading, columns);
+  throw InputError({path.string()}, "header", found + names_in(path, reading),
+                   expected + (command.empty() ? "" : "; or " + command));
 }
 
 void require_rows(const fs::path& path, const std::vector<GuessedColumn>& columns,

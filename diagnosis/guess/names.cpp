@@ -13,6 +13,7 @@
 #include "diagnosis/guess/file_head.h"
 #include "diagnosis/guess/header.h"
 #include "diagnosis/guess/meanings.h"
+#include "photovoltaics/fit/curve_words.h"
 
 namespace photorque {
 namespace {
@@ -345,19 +346,84 @@ void refuse_counts(const FileHead& head, const std::vector<ReadColumn>& columns,
   }
 }
 
-// A reading in an unknown unit would be of a wrong size, and the motion without it another.
-void refuse_wrong_units(const std::vector<ReadColumn>& columns, const InputLocation& where) {
+// The vector that a channel is a component of; empty for others.
+std::string vector_of(const std::string& stem) {
+  if (is_one_of(stem, {"x", "y"})) return "position";
+  if (is_one_of(stem, {"roll", "pitch", "yaw"})) return "angles";
+  const size_t end = stem.rfind('_');
+  return end == std::string::npos || stem.size() != end + 2 ? "" : stem.substr(0, end);
+}
+
+// Whether a column in an unknown unit can be left out: a motion over time remains, and no other
+// component of its vector.
+bool is_dispensable(const ReadColumn& column, const std::vector<ReadColumn>& columns,
+                    bool has_clock) {
+  if (column.stem == "t" || unit_written(column.wrong_unit)) return false;
+  const std::string vector = vector_of(column.stem);
+  bool moves = false;
+  for (const ReadColumn& c : columns) {
+    if (!is_motion(c.guess.channel)) continue;
+    moves = true;
+    if (!vector.empty() && vector_of(unit_of_key(c.guess.channel).stem) == vector) return false;
+  }
+  return moves && has_clock;
+}
+
+// The channel of a column whose unit is not suitable, in the unit that it may have.
+std::string channel_in_SI(const ReadColumn& column) {
+  const std::string unit = column.dimension == "time"           ? "s"
+                           : column.dimension == "angle"        ? "rad"
+                           : column.dimension == "angular rate" ? "rad_s"
+                           : column.dimension == "length"       ? "m"
+                           : column.dimension == "speed"        ? "m_s"
+                                                                : "";
+  return unit.empty() ? "" : column.stem + "_" + unit;
+}
+
+// A reading in an unknown unit would be of a wrong size. It is left out if other motion remains.
+void refuse_wrong_units(std::vector<ReadColumn>& columns, const std::filesystem::path& path,
+                        const FileHead& head, const RecordingOptions& reading) {
   const bool turns = std::ranges::any_of(columns, [](const ReadColumn& c) {
     return is_motion(c.guess.channel) && !begins(c.guess.channel, {"x_", "y_"});
   });
-  for (const ReadColumn& c : columns) {
+  const bool has_clock = reading.rate_Hz || is_taken(columns, "t");
+  for (ReadColumn& c : columns) {
     if (c.wrong_unit.empty() || is_taken(columns, c.stem)) continue;
     if (begins(c.stem, {"accel_", "mag_"}) || (turns && is_one_of(c.stem, {"x", "y"}))) continue;
-    throw InputError(where, c.guess.in_file, "the unit " + in_quotes(c.wrong_unit),
+    if (is_dispensable(c, columns, has_clock)) {
+      c.guess.unknown_unit = c.wrong_unit;
+      continue;
+    }
+    std::vector<GuessedColumn> offered;
+    for (const ReadColumn& one : columns) {
+      offered.push_back(one.guess);
+      if (&one == &c) offered.back().channel = channel_in_SI(c);
+    }
+    const std::string command = command_for_columns(path, reading, offered);
+    throw InputError({path.string(), head.line}, c.guess.in_file,
+                     "the unit " + in_quotes(c.wrong_unit),
                      units_for(c.dimension) +
                          ": convert the column, or rename it if it is another "
-                         "quantity");
+                         "quantity" +
+                         (command.empty() ? "" : "; or " + command));
   }
+}
+
+// The last column of a voltage or a current by its name, also in an unknown unit; no dark curve.
+std::optional<size_t> place_of(curve_text::Column wanted,
+                               const std::vector<GuessedColumn>& columns) {
+  const bool is_voltage = wanted == curve_text::voltage;
+  std::optional<size_t> place;
+  for (size_t k = 0; k < columns.size(); ++k) {
+    const std::string& name = columns[k].in_file;
+    const Words words{words_of_header(name)};
+    const curve_text::Column column = curve_text::named(name).column;
+    const bool is_named = column != curve_text::columns ? column == wanted
+                          : is_voltage                  ? words.any_is({"v", "u"})
+                                                        : words.any_is({"i", "j"});
+    if (is_named && !words.any_is({"d", "dark"})) place = k;
+  }
+  return place;
 }
 
 }  // namespace
@@ -368,7 +434,7 @@ std::vector<GuessedColumn> guess_columns(const std::filesystem::path& path,
   const FileHead head = head_of(path, reading);
   std::vector<ReadColumn> columns = read_columns(head);
   if (!is_taken(columns, "t")) read_counter(head, columns);
-  refuse_wrong_units(columns, {path.string(), head.line});
+  refuse_wrong_units(columns, path, head, reading);
   refuse_counts(head, columns, {path.string(), head.line});
   std::vector<GuessedColumn> all;
   for (const ReadColumn& column : columns) all.push_back(column.guess);
@@ -382,6 +448,29 @@ bool has_motion(const std::vector<GuessedColumn>& columns) {
 bool has_time(const std::vector<GuessedColumn>& columns) {
   return std::ranges::any_of(columns,
                              [](const GuessedColumn& c) { return c.channel.starts_with("t_"); });
+}
+
+std::string command_for_columns(const std::filesystem::path& path, const RecordingOptions& reading,
+                                const std::vector<GuessedColumn>& columns) {
+  const FileHead head = head_of(path, reading);
+  std::vector<std::string> names;
+  for (size_t k = 0; k < columns.size(); ++k) {
+    names.push_back(columns[k].channel.empty() ? "column_" + std::to_string(k + 1)
+                                               : columns[k].channel);
+  }
+  const auto voltage = place_of(curve_text::voltage, columns),
+             current = place_of(curve_text::current, columns);
+  if (!has_motion(columns)) {
+    if (!voltage || !current || voltage == current) return "";
+    names[*voltage] = "voltage_V";
+    names[*current] = "current_A";
+  } else if (!has_time(columns) && !reading.rate_Hz) {
+    size_t k = 0;
+    while (k < names.size() && !(columns[k].channel.empty() && rises(head, k))) ++k;
+    if (k == names.size()) return "";
+    names[k] = "t_" + clock_unit(head, k);
+  }
+  return command_with_names(path, joined_text(names, ","));
 }
 
 std::string names_in(const std::filesystem::path& path, const RecordingOptions& reading) {

@@ -1,10 +1,13 @@
-// Motions that identify the machine of recorded coordinates: the bob of a pendulum or a mark on a
-// turntable moves on a circle, and a weight on a spring oscillates about its rest position.
+// Motions that identify the machine of recorded coordinates or rates: the bob of a pendulum or a
+// mark on a turntable moves on a circle, and a weight on a spring oscillates about its rest
+// position.
 #pragma once
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
+#include "attitude/observation/observation.h"
 #include "attitude/recordings/recording.h"
 
 namespace photorque {
@@ -34,5 +37,17 @@ struct Oscillation {
 // elastic walls.
 std::optional<Oscillation> oscillation_of(const Recording& recording,
                                           const Eigen::Vector2d& noise_m);
+
+// Whether the rates have no mean, as those of a swing. A free body rotates in one sense about one
+// of its principal axes.
+bool has_no_mean_rate(const std::vector<Observation>& runs);
+
+// The body axis (0 to 2) that is nearest to the line along which nearly all of the rate lies.
+// `across`: the largest rate across this line, as a fraction of that along it. Returns nothing if
+// there is no such line.
+std::optional<int> axis_of_swing(const std::vector<Observation>& runs, double across);
+
+// The axis with nearly all of the rate; none if several have significant rates.
+std::optional<int> only_axis(const std::vector<Observation>& runs);
 
 }  // namespace photorque

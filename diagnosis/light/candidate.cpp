@@ -5,7 +5,8 @@
 namespace photorque {
 namespace {
 
-void add_numbers(LightCandidate& c) {
+// Adds a candidate with the numbers of its kind, and the traits that follow from them.
+void add(LightCandidate c, std::vector<LightCandidate>& all) {
   for (size_t p = 0; p < c.kind.parameters.size(); ++p) {
     const EffectParameter& e = c.kind.parameters[p];
     for (size_t k = 0; k < e.count; ++k) {
@@ -15,6 +16,16 @@ void add_numbers(LightCandidate& c) {
                            e.is_fitted});
     }
   }
+  const auto is_strength = [](const LightCandidate::Number& n) { return n.is_strength; };
+  const auto is_fitted = [](const LightCandidate::Number& n) { return n.is_fitted; };
+  c.parameters = static_cast<size_t>(std::ranges::count_if(c.numbers, is_fitted));
+  c.has_strength = std::ranges::any_of(c.numbers, is_strength);
+  c.is_linear = c.has_strength && std::ranges::all_of(c.numbers, [&](const auto& n) {
+                  return is_strength(n) || !is_fitted(n);
+                });
+  c.has_place = c.kind.scan == LightEffectKind::Scan::shadow;
+  if (c.kind.index != LightEffectKind::Index::none) c.kind_of_place = c.kind.name;
+  all.push_back(std::move(c));
 }
 
 bool can_show(const LightEffectKind& kind, const std::vector<FittedRun>& runs) {
@@ -63,20 +74,6 @@ std::vector<double> LightCandidate::start() const {
   return x;
 }
 
-size_t LightCandidate::fitted() const {
-  return static_cast<size_t>(
-      std::ranges::count_if(numbers, [](const Number& n) { return n.is_fitted; }));
-}
-
-bool LightCandidate::has_strength() const {
-  return std::ranges::any_of(numbers, [](const Number& n) { return n.is_strength; });
-}
-
-bool LightCandidate::is_linear() const {
-  return std::ranges::all_of(numbers,
-                             [](const Number& n) { return n.is_strength || !n.is_fitted; });
-}
-
 LightCandidates light_candidates(const LightLab& lab, const NominalLight& nominal,
                                  const std::vector<FittedRun>& runs, const Thresholds& limits) {
   LightCandidates all{{}, limits, &lab, nominal};
@@ -87,24 +84,23 @@ LightCandidates light_candidates(const LightLab& lab, const NominalLight& nomina
         nominal.uncertain, [&](const LightPrior& p) { return p.key.starts_with(kind.name + "."); });
     if (is_nominal) continue;
     const size_t count = lab.parts().count_of(kind.index);
-    const bool bends = kind.index == LightEffectKind::Index::cell &&
-                       std::ranges::any_of(runs, [](const FittedRun& r) {
-                         return r.run->recording().kind != LightRecording::Kind::scan;
-                       });
+    // Cell circuits make the readings a nonlinear function of the numbers of a cell.
+    const bool is_fitted_first = kind.index == LightEffectKind::Index::cell &&
+                                 std::ranges::any_of(runs, [](const FittedRun& r) {
+                                   return r.run->recording().kind != LightRecording::Kind::scan;
+                                 });
     // If the only string is interrupted or the only diode is shorted, nothing can be measured.
     const bool is_only = count < 2 && (kind.index == LightEffectKind::Index::string);
     for (size_t i = 0; i < count && !is_only; ++i) {
-      LightCandidate c{kind, i, kind.name, {}, {}};
-      c.bends = bends;
-      if (kind.is_numbered()) c.label += "[" + std::to_string(i) + "]";
-      add_numbers(c);
-      all.list.push_back(std::move(c));
+      LightCandidate c;
+      c.kind = kind;
+      c.index = i;
+      c.name = kind.name + (kind.is_numbered() ? "[" + std::to_string(i) + "]" : "");
+      c.is_fitted_first = is_fitted_first;
+      add(std::move(c), all.list);
     }
   }
-  for (LightCandidate& c : empirical_light_candidates(runs)) {
-    add_numbers(c);
-    all.list.push_back(std::move(c));
-  }
+  for (LightCandidate& c : empirical_light_candidates(runs)) add(std::move(c), all.list);
   return all;
 }
 

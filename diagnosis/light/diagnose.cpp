@@ -5,9 +5,7 @@
 
 #include "core/errors.h"
 #include "core/parallel.h"
-#include "diagnosis/light/domain.h"
 #include "diagnosis/light/findings.h"
-#include "diagnosis/light/segments.h"
 #include "inference/decide.h"
 #include "inference/search.h"
 #include "inference/weigh.h"
@@ -44,10 +42,6 @@ void tell(const LightDiagnoseOptions& options, const std::string& what) {
   if (options.progress) options.progress(what);
 }
 
-Eigen::VectorXd nominal_residuals(const FittedRun& run, const NominalLight& nominal) {
-  return run.run->residuals(nominal.state, run.run->signals(nominal.state, *run.nominal), nullptr);
-}
-
 // Thins a long recording and removes outliers.
 FittedRun observed(const LightLab& lab, const NominalLight& nominal, LightRecording recording,
                    int number, DataQuality& quality) {
@@ -67,8 +61,9 @@ FittedRun observed(const LightLab& lab, const NominalLight& nominal, LightRecord
   LightRun whole(lab, std::move(recording));
   whole.set_number(number);
   FittedRun run = prepared_run(std::move(whole), nominal);
-  const std::vector<size_t> good =
-      rows_without_outliers(*run.run, nominal_residuals(run, nominal), light_thresholds().noise);
+  const std::vector<double> signals = run.run->signals(nominal.state, *run.nominal);
+  const std::vector<size_t> good = rows_without_outliers(
+      *run.run, run.run->residuals(nominal.state, signals, nullptr), light_thresholds().noise);
   if (good.size() < run.run->rows()) {
     quality.rejected["outlier"] += static_cast<int64_t>(run.run->rows() - good.size());
     run = part_of(run, good, nominal);
@@ -153,40 +148,40 @@ bool drop_light_outliers(const LightTrial& about, const LightCandidates& all, Li
 LightAnswer explain_light(const LightLab& lab, const NominalLight& nominal, LightData& data,
                           const LightDiagnoseOptions& options) {
   LightAnswer answer{light_candidates(lab, nominal, data.train, light_thresholds()), {}, {}};
-  const LightDomain domain(answer.all);
+  const LightCandidates& all = answer.all;
   tell(options, "fitting every effect of the catalogue");
-  answer.trials = inference::search(domain, nominal_light_trial(answer.all, data.train), data.train,
-                                    options.threads);
+  answer.trials =
+      inference::search(all, nominal_light_trial(all, data.train), data.train, options.threads);
   // Near a missing effect an outlier looks like a part of it. It stands out once the best
   // explanation is known, and the search continues from there.
   const LightTrial best = answer.trials[inference::by_evidence(answer.trials).front()];
-  if (drop_light_outliers(best, answer.all, data)) {
-    const LightTrial base = nominal_light_trial(answer.all, data.train);
+  if (drop_light_outliers(best, all, data)) {
+    const LightTrial base = nominal_light_trial(all, data.train);
     const LightTrial from =
-        domain.refit(best, data.train, {}, inference::until_convergence(domain.limits()));
-    answer.trials =
-        inference::Rounds<LightDomain>(domain, {data.train}, base,
-                                       domain.limits().search.max_effects, options.threads)
-            .run(from);
+        all.refit(best, data.train, {}, inference::until_convergence(all.limits));
+    answer.trials = inference::Rounds<LightCandidates>(
+                        all, {data.train}, base, all.limits.search.max_effects, options.threads)
+                        .run(from);
   }
   tell(options, "comparing with the held-out data");
-  inference::weigh_with_held_out(domain, data.train, data.held, options.threads, answer.trials);
+  inference::weigh_with_held_out(all, data.train, data.held, options.threads, answer.trials);
   const std::vector<FittedRun> everything = data.all();
   const inference::Checks checks{
       .excess_sigma =
-          [&](size_t trial) { return domain.excess_sigma(answer.trials[trial], data.train); },
+          [&](size_t trial) { return all.excess_sigma(answer.trials[trial], data.train); },
       .gain_sigma =
           [&](size_t trial, size_t which) {
-            return gain_over_segments(answer.trials[trial], which, answer.all, everything,
+            return gain_over_segments(answer.trials[trial], which, all, everything,
                                       options.threads);
           },
       .other_places =
           [&](size_t trial, size_t which) {
-            return other_light_places(answer.trials[trial], which, answer.all, everything,
+            return other_light_places(answer.trials[trial], which, all, everything,
                                       options.threads);
           }};
-  answer.decision = inference::decide({answer.trials.begin(), answer.trials.end()},
-                                      domain.candidates(), checks, domain.limits().decision);
+  answer.decision =
+      inference::decide({answer.trials.begin(), answer.trials.end()},
+                        {all.list.begin(), all.list.end()}, checks, all.limits.decision);
   return answer;
 }
 
@@ -213,8 +208,8 @@ std::map<std::string, double> rms_of(const LightTrial& trial, const LightCandida
 }
 
 Holdout light_holdout(const LightAnswer& answer, const std::vector<FittedRun>& held) {
-  const LightTrial before = predict_light(answer.trials.front(), answer.all, held),
-                   after = predict_light(answer.chosen(), answer.all, held);
+  const LightTrial before = answer.all.predict(answer.trials.front(), held),
+                   after = answer.all.predict(answer.chosen(), held);
   Holdout result;
   result.samples = after.fit.samples;
   result.chi2_per_sample_before = before.fit.chi2_per_sample();
@@ -258,8 +253,7 @@ std::vector<Where::ChannelMisfit> misfits(const LightAnswer& answer,
   for (const auto& [name, sum] : sums) {
     result.push_back({name, sum.first / static_cast<double>(sum.second)});
   }
-  std::ranges::stable_sort(
-      result, [](const auto& a, const auto& b) { return a.chi2_per_sample > b.chi2_per_sample; });
+  std::ranges::stable_sort(result, std::greater(), &Where::ChannelMisfit::chi2_per_sample);
   return result;
 }
 
@@ -301,11 +295,7 @@ Diagnosis diagnose_light(const LightLab& lab, const NominalLight& nominal,
   for (const FittedRun& run : data.held) d.series.push_back(light_series(answer, run, true));
   d.array = drawn_array(lab, d.effects);
   d.data = data.quality;
-  if (answer.decision.undecided) {
-    d.warnings.push_back(
-        "only fitted and held-out recordings together show an effect, and they do not determine "
-        "which one: see the alternatives");
-  }
+  if (answer.decision.undecided) d.warnings.emplace_back(undecided_effect);
   if (!answer.decision.held_out_tests_names) d.warnings.push_back(untested_names(*d.holdout));
   if (lab.has_array()) {
     std::vector<WeighedSpectrum> spectra;

@@ -1,5 +1,4 @@
-#include "diagnosis/light/domain.h"
-
+// Light and power as a domain of the search for missing effects (inference/domain.h).
 #include <algorithm>
 #include <cmath>
 
@@ -10,24 +9,11 @@
 namespace photorque {
 namespace {
 
-static_assert(inference::Domain<LightDomain>);
-
-inference::CandidateTraits traits_of_light(const LightCandidate& c) {
-  inference::CandidateTraits traits;
-  traits.name = c.label;
-  traits.is_empirical = c.is_empirical();
-  traits.is_linear = c.is_linear() && c.has_strength();
-  traits.has_strength = c.has_strength();
-  traits.has_place = c.kind.scan == LightEffectKind::Scan::shadow;
-  if (c.kind.index != LightEffectKind::Index::none) traits.kind_of_place = c.kind.name;
-  traits.parameters = c.fitted();
-  traits.is_fitted_first = c.bends;
-  return traits;
-}
+static_assert(inference::Domain<LightCandidates>);
 
 // Normal sums over all recordings, for the trial and the further terms `more`.
 inference::NormalSums sums_of(const LightTrial& at, const LightCandidates& all,
-                              const std::vector<inference::Term<LightStart>>& more,
+                              const LightCandidates::Terms& more,
                               const std::vector<FittedRun>& runs) {
   inference::NormalSums sums;
   for (const FittedRun& run : runs) {
@@ -49,52 +35,23 @@ inference::NormalSums sums_of(const LightTrial& at, const LightCandidates& all,
   return sums;
 }
 
-inference::StrengthGroup strengths_of(const LightCandidate& c, size_t term,
-                                      const std::vector<double>* x) {
-  inference::StrengthGroup group;
-  group.term = term;
-  group.name = c.label;
-  group.is_empirical = c.is_empirical();
-  for (size_t k = 0; k < c.numbers.size(); ++k) {
-    const LightCandidate::Number& n = c.numbers[k];
-    if (!n.is_strength) continue;
-    group.value.push_back(x != nullptr ? (*x)[k] : 0.0);
-    group.scale.push_back(n.scale);
-    // Forecasts overshoot where the model is nonlinear, and the fit enforces the bounds, so only
-    // signs are required here.
-    group.lowest.push_back(n.lowest == 0.0 ? 0.0 : -inference::infinity);
-    group.highest.push_back(n.highest == 0.0 ? 0.0 : inference::infinity);
-  }
-  return group;
-}
-
 }  // namespace
 
-LightDomain::LightDomain(const LightCandidates& all) : all_(all) {
-  for (const LightCandidate& c : all.list) traits_.push_back(traits_of_light(c));
+LightTrial LightCandidates::extend(const Trial& parent, size_t candidate, const Start& start,
+                                   const Runs& runs, const Effort& effort) const {
+  // The interval of a trapped tracker is computed from the recordings instead of fitted.
+  const bool is_trapped = list[candidate].kind.scan == LightEffectKind::Scan::trapped;
+  const std::vector<double> x = is_trapped ? trapped_interval(parent, *this, runs) : start.x;
+  return fit(with_candidate(parent, candidate, x), runs, effort.max_iterations);
 }
 
-// Sets numbers that are computed from the recordings instead of fitted.
-LightStart LightDomain::profiled(const Trial& parent, size_t candidate, Start start,
-                                 const Runs& runs) const {
-  if (all_[candidate].kind.scan != LightEffectKind::Scan::trapped) return start;
-  return {trapped_interval(parent, all_, runs)};
+LightTrial LightCandidates::refit(const Trial& trial, const Runs& runs, const std::vector<Begin>&,
+                                  const Effort& effort) const {
+  return fit(trial, runs, effort.max_iterations);
 }
 
-LightTrial LightDomain::extend(const Trial& parent, size_t candidate, const Start& start,
-                               const Runs& runs, const Effort& effort) const {
-  return fit_light(all_,
-                   with_candidate(parent, candidate, profiled(parent, candidate, start, runs).x),
-                   runs, effort.max_iterations);
-}
-
-LightTrial LightDomain::refit(const Trial& trial, const Runs& runs, const std::vector<Begin>&,
-                              const Effort& effort) const {
-  return fit_light(all_, trial, runs, effort.max_iterations);
-}
-
-LightTrial LightDomain::refit_near(const Trial& trial, const Trial& other, const Runs& runs,
-                                   const Effort& effort) const {
+LightTrial LightCandidates::refit_near(const Trial& trial, const Trial& other, const Runs& runs,
+                                       const Effort& effort) const {
   Trial near = trial;
   near.priors = other.priors;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
@@ -102,94 +59,88 @@ LightTrial LightDomain::refit_near(const Trial& trial, const Trial& other, const
     if (equal == other.candidates.end()) continue;
     near.x[i] = other.x[static_cast<size_t>(equal - other.candidates.begin())];
   }
-  return fit_light(all_, near, runs, effort.max_iterations);
+  return fit(near, runs, effort.max_iterations);
 }
 
-LightTrial LightDomain::predict(const Trial& trial, const Runs& runs) const {
-  return predict_light(trial, all_, runs);
+std::vector<LightCandidates::Begin> LightCandidates::initial_conditions_of(
+    const Trial& trial) const {
+  return std::vector<Begin>(trial.fit.run_chi2.size());
 }
 
-std::vector<double> LightDomain::gains(const Trial& at, const std::vector<size_t>& candidates,
-                                       const Runs& runs) const {
-  std::vector<inference::Term<Start>> more;
+LightTrial LightCandidates::with_initial_conditions(Trial trial, const std::vector<Begin>&) const {
+  return trial;
+}
+
+std::vector<double> LightCandidates::gains(const Trial& at, const std::vector<size_t>& candidates,
+                                           const Runs& runs) const {
+  Terms more;
   for (const size_t c : candidates) {
-    if (traits_[c].is_linear) more.push_back({c, start_of(c)});
+    if (list[c].is_linear) more.push_back({c, start_of(c)});
   }
-  const inference::NormalSums sums = sums_of(at, all_, more, runs);
-  const inference::Projected projected = inference::project_out(sums, fitted_numbers(at, all_));
+  const inference::NormalSums sums = sums_of(at, *this, more, runs);
+  const inference::Projected projected = inference::project_out(sums, fitted_numbers(at, *this));
   std::vector<double> gains;
   Eigen::Index first = 0;
   for (const size_t c : candidates) {
-    if (!traits_[c].is_linear) {
+    if (!list[c].is_linear) {
       gains.push_back(0.0);
       continue;
     }
-    const auto count = static_cast<Eigen::Index>(all_[c].fitted());
+    const auto count = static_cast<Eigen::Index>(list[c].parameters);
     gains.push_back(projected.score(first, count).gain);
     first += count;
   }
   return gains;
 }
 
-std::vector<inference::Term<LightStart>> LightDomain::terms_of(const Trial& trial) const {
-  std::vector<inference::Term<Start>> terms;
+LightCandidates::Terms LightCandidates::terms_of(const Trial& trial) const {
+  Terms terms;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     terms.push_back({trial.candidates[i], {trial.x[i]}});
   }
   return terms;
 }
 
-inference::LinearProblem LightDomain::linear_problem(
-    const Trial& at, const std::vector<inference::Term<Start>>& terms, const Runs& runs) const {
+inference::LinearProblem LightCandidates::linear_problem(const Trial& at, const Terms& terms,
+                                                         const Runs& runs) const {
   const size_t own = at.candidates.size();
-  const std::vector<inference::Term<Start>> more(terms.begin() + static_cast<std::ptrdiff_t>(own),
-                                                 terms.end());
-  const inference::NormalSums sums = sums_of(at, all_, more, runs);
+  const Terms more(terms.begin() + static_cast<std::ptrdiff_t>(own), terms.end());
+  const inference::NormalSums sums = sums_of(at, *this, more, runs);
   if (!std::isfinite(sums.chi2) || !sums.matrix.allFinite()) return {};
   inference::LinearProblem problem;
-  std::vector<Eigen::Index> wanted;
-  const auto add = [&](inference::StrengthGroup group, const std::vector<Eigen::Index>& columns) {
-    group.first = static_cast<Eigen::Index>(wanted.size());
-    wanted.insert(wanted.end(), columns.begin(), columns.end());
-    problem.groups.push_back(std::move(group));
-  };
-  Eigen::Index next = static_cast<Eigen::Index>(at.priors.size());
-  for (size_t i = 0; i < own; ++i) {
-    const LightCandidate& c = all_[at.candidates[i]];
-    std::vector<Eigen::Index> columns;
-    for (const LightCandidate::Number& n : c.numbers) {
-      if (!n.is_fitted) continue;
-      if (n.is_strength) columns.push_back(next);
-      ++next;
+  std::vector<Eigen::Index> columns;
+  // Columns of the sums: the priors, the fitted numbers of the trial, the strengths of more terms.
+  auto next = static_cast<Eigen::Index>(at.priors.size());
+  for (size_t t = 0; t < terms.size(); ++t) {
+    const LightCandidate& c = list[terms[t].candidate];
+    inference::StrengthGroup group;
+    group.term = t;
+    group.name = c.name;
+    group.is_empirical = c.is_empirical;
+    group.first = static_cast<Eigen::Index>(columns.size());
+    for (size_t k = 0; k < c.numbers.size(); ++k) {
+      const LightCandidate::Number& n = c.numbers[k];
+      if (!(t < own ? n.is_fitted : n.is_strength)) continue;
+      const Eigen::Index column = next++;
+      if (!n.is_strength) continue;
+      columns.push_back(column);
+      group.value.push_back(t < own ? at.x[t][k] : 0.0);
+      group.scale.push_back(n.scale);
+      // Forecasts overshoot where the model is nonlinear, and the fit enforces the bounds, so only
+      // signs are required here.
+      group.lowest.push_back(n.lowest == 0.0 ? 0.0 : -inference::infinity);
+      group.highest.push_back(n.highest == 0.0 ? 0.0 : inference::infinity);
     }
-    if (!columns.empty()) add(strengths_of(c, i, &at.x[i]), columns);
+    if (group.count() > 0) problem.groups.push_back(std::move(group));
   }
-  for (size_t i = 0; i < more.size(); ++i) {
-    const LightCandidate& c = all_[more[i].candidate];
-    std::vector<Eigen::Index> columns;
-    for (const LightCandidate::Number& n : c.numbers) {
-      if (n.is_strength) columns.push_back(next++);
-    }
-    add(strengths_of(c, own + i, nullptr), columns);
-  }
-  std::vector<bool> is_wanted(static_cast<size_t>(sums.gradient.size()), false);
-  for (const Eigen::Index c : wanted) is_wanted[static_cast<size_t>(c)] = true;
-  std::vector<Eigen::Index> order;
-  for (Eigen::Index i = 0; i < sums.gradient.size(); ++i) {
-    if (!is_wanted[static_cast<size_t>(i)]) order.push_back(i);
-  }
-  const auto fitted = static_cast<Eigen::Index>(order.size());
-  order.insert(order.end(), wanted.begin(), wanted.end());
-  const inference::NormalSums sorted{sums.matrix(order, order), sums.gradient(order), sums.chi2,
-                                     sums.samples};
-  inference::Projected projected = inference::project_out(sorted, fitted);
+  inference::Projected projected = inference::project_onto(sums, columns);
   problem.information = std::move(projected.information);
   problem.gradient = std::move(projected.gradient);
   return problem;
 }
 
-LightTrial LightDomain::assemble(const Trial& from, const inference::Members<Start>& members,
-                                 const Runs& runs, const Effort& effort) const {
+LightTrial LightCandidates::assemble(const Trial& from, const inference::Members<Start>& members,
+                                     const Runs& runs, const Effort& effort) const {
   Trial plain, predicted;
   plain.priors = from.priors;
   for (const inference::Member<Start>& member : members) {
@@ -198,7 +149,7 @@ LightTrial LightDomain::assemble(const Trial& from, const inference::Members<Sta
   predicted = plain;
   for (size_t m = 0; m < members.size(); ++m) {
     const inference::Member<Start>& member = members[m];
-    const LightCandidate& c = all_[member.term.candidate];
+    const LightCandidate& c = list[member.term.candidate];
     Eigen::Index k = 0;
     for (size_t n = 0; n < c.numbers.size() && member.strengths.size() > 0; ++n) {
       if (!c.numbers[n].is_strength) continue;
@@ -208,23 +159,17 @@ LightTrial LightDomain::assemble(const Trial& from, const inference::Members<Sta
   }
   // The fit starts from the forecast and, if the result is worse than before, from the present
   // values: from a forecast far off it may diverge.
-  Trial trial = fit_light(all_, predicted, runs, effort.max_iterations);
+  Trial trial = fit(predicted, runs, effort.max_iterations);
   const bool is_worse = !(trial.fit.chi2 < from.fit.chi2);
   if (is_worse && predicted.x != plain.x) {
-    Trial other = fit_light(all_, plain, runs, effort.max_iterations);
+    Trial other = fit(plain, runs, effort.max_iterations);
     if (other.log_evidence > trial.log_evidence) trial = std::move(other);
   }
   return trial;
 }
 
-std::vector<std::vector<LightStart>> LightDomain::starts(const Trial& parent,
-                                                         const std::vector<size_t>& candidates,
-                                                         const Runs& runs, const Runs&,
-                                                         int threads) const {
-  return starts_from_scan(parent, all_, candidates, runs, threads);
-}
-
-std::vector<FittedRun> LightDomain::average(const Trial&, const Runs& runs, size_t count) const {
+std::vector<FittedRun> LightCandidates::average(const Trial&, const Runs& runs,
+                                                size_t count) const {
   Runs result;
   for (const FittedRun& run : runs) {
     const bool over_time = run.run->recording().kind == LightRecording::Kind::run;
@@ -235,24 +180,24 @@ std::vector<FittedRun> LightDomain::average(const Trial&, const Runs& runs, size
     }
     std::vector<size_t> rows;
     for (size_t i = 0; i < run.run->rows(); i += every) rows.push_back(i);
-    result.push_back(part_of(run, rows, all_.nominal));
+    result.push_back(part_of(run, rows, nominal));
   }
   return result;
 }
 
-double LightDomain::excess_sigma(const Trial& trial, const Runs& runs) const {
+double LightCandidates::excess_sigma(const Trial& trial, const Runs& runs) const {
   double chi2 = 0.0, samples = 0.0;
   std::vector<inference::ChannelResiduals> ordered;
   for (const FittedRun& run : runs) {
-    const Eigen::VectorXd r = residuals_of(trial, all_, run);
+    const Eigen::VectorXd r = residuals_of(trial, *this, run);
     chi2 += r.squaredNorm();
     samples += static_cast<double>(r.size());
     for (auto& channel : in_order_of_place(*run.run, r)) ordered.push_back({std::move(channel)});
   }
-  if (!std::isfinite(chi2)) return limits().noise.excess_unknown;
+  if (!std::isfinite(chi2)) return limits.noise.excess_unknown;
   double excess = 0.0;
-  for (const size_t neighbours : {limits().noise.neighbours / 4, limits().noise.neighbours}) {
-    Thresholds::Noise scale = limits().noise;
+  for (const size_t neighbours : {limits.noise.neighbours / 4, limits.noise.neighbours}) {
+    Thresholds::Noise scale = limits.noise;
     scale.neighbours = neighbours;
     excess = std::max(excess, inference::whiteness(ordered, scale).excess_sigma);
   }

@@ -16,7 +16,8 @@ using Basis = std::function<double(const SampleConditions&)>;
 LightCandidate empirical_law(const std::string& variable, const std::string& label) {
   LightCandidate c;
   c.variable = variable;
-  c.label = c.kind.name = label;
+  c.is_empirical = true;
+  c.name = c.kind.name = label;
   return c;
 }
 
@@ -141,6 +142,55 @@ std::vector<Basis> powers(double SampleConditions::*variable, const Extent& e, i
   return basis;
 }
 
+constexpr int most_steps = 40;
+constexpr double step = 0.4;  // cycles over half of the receiver: half a cycle between its ends
+constexpr int along_v = 2 * most_steps + 1;
+
+// Sums over places for each wave of the grid.
+struct WaveSums {
+  std::vector<double> re, im, twice_re, twice_im;
+  double square = 0.0;
+  WaveSums() {
+    for (auto* sum : {&re, &im, &twice_re, &twice_im}) {
+      sum->assign(static_cast<size_t>(most_steps + 1) * along_v, 0.0);
+    }
+  }
+};
+
+// Adds a place whose reading changes by `change` standard errors per strength and deviates by `off`
+// standard errors.
+void add_place(double u, double v, double change, double off, WaveSums& sums) {
+  std::array<double, along_v> cos_v, sin_v;
+  for (int n = 0; n < along_v; ++n) {
+    const double phase = pi * step * (n - most_steps) * v;
+    cos_v[static_cast<size_t>(n)] = std::cos(phase);
+    sin_v[static_cast<size_t>(n)] = std::sin(phase);
+  }
+  const double first = change * off, second = change * change;
+  sums.square += second;
+  for (int m = 0; m <= most_steps; ++m) {
+    const double cos_u = std::cos(pi * step * m * u), sin_u = std::sin(pi * step * m * u);
+    const auto row = static_cast<size_t>(m) * along_v;
+    for (size_t n = 0; n < along_v; ++n) {
+      const double c = cos_u * cos_v[n] - sin_u * sin_v[n], s = sin_u * cos_v[n] + cos_u * sin_v[n];
+      sums.re[row + n] += first * c;
+      sums.im[row + n] += first * s;
+      sums.twice_re[row + n] += second * (c * c - s * s);
+      sums.twice_im[row + n] += second * 2.0 * c * s;
+    }
+  }
+}
+
+// Fall of χ² by fitting the cosine and sine of one wave.
+double gain_of(const WaveSums& sums, size_t k) {
+  const double a = 0.5 * (sums.square + sums.twice_re[k]),
+               b = 0.5 * (sums.square - sums.twice_re[k]), c = 0.5 * sums.twice_im[k];
+  const double det = a * b - c * c;
+  if (!(det > 1e-9 * sums.square * sums.square)) return 0.0;
+  const double g = sums.re[k], h = sums.im[k];
+  return (b * g * g - 2.0 * c * g * h + a * h * h) / det;
+}
+
 }  // namespace
 
 std::vector<LightCandidate> empirical_light_candidates(const std::vector<FittedRun>& runs) {
@@ -194,59 +244,6 @@ std::vector<LightCandidate> empirical_light_candidates(const std::vector<FittedR
   if (curves) all.push_back(current_over_voltage());
   return all;
 }
-
-namespace {
-
-constexpr int most_steps = 40;
-constexpr double step = 0.4;  // cycles over half of the receiver: half a cycle between its ends
-constexpr int along_v = 2 * most_steps + 1;
-
-// Sums over places for each wave of the grid.
-struct WaveSums {
-  std::vector<double> re, im, twice_re, twice_im;
-  double square = 0.0;
-  WaveSums() {
-    for (auto* sum : {&re, &im, &twice_re, &twice_im}) {
-      sum->assign(static_cast<size_t>(most_steps + 1) * along_v, 0.0);
-    }
-  }
-};
-
-// Adds a place whose reading changes by `change` standard errors per strength and deviates by `off`
-// standard errors.
-void add_place(double u, double v, double change, double off, WaveSums& sums) {
-  std::array<double, along_v> cos_v, sin_v;
-  for (int n = 0; n < along_v; ++n) {
-    const double phase = pi * step * (n - most_steps) * v;
-    cos_v[static_cast<size_t>(n)] = std::cos(phase);
-    sin_v[static_cast<size_t>(n)] = std::sin(phase);
-  }
-  const double first = change * off, second = change * change;
-  sums.square += second;
-  for (int m = 0; m <= most_steps; ++m) {
-    const double cos_u = std::cos(pi * step * m * u), sin_u = std::sin(pi * step * m * u);
-    const auto row = static_cast<size_t>(m) * along_v;
-    for (size_t n = 0; n < along_v; ++n) {
-      const double c = cos_u * cos_v[n] - sin_u * sin_v[n], s = sin_u * cos_v[n] + cos_u * sin_v[n];
-      sums.re[row + n] += first * c;
-      sums.im[row + n] += first * s;
-      sums.twice_re[row + n] += second * (c * c - s * s);
-      sums.twice_im[row + n] += second * 2.0 * c * s;
-    }
-  }
-}
-
-// Fall of χ² by fitting the cosine and sine of one wave.
-double gain_of(const WaveSums& sums, size_t k) {
-  const double a = 0.5 * (sums.square + sums.twice_re[k]),
-               b = 0.5 * (sums.square - sums.twice_re[k]), c = 0.5 * sums.twice_im[k];
-  const double det = a * b - c * c;
-  if (!(det > 1e-9 * sums.square * sums.square)) return 0.0;
-  const double g = sums.re[k], h = sums.im[k];
-  return (b * g * g - 2.0 * c * g * h + a * h * h) / det;
-}
-
-}  // namespace
 
 std::vector<LightStart> wave_starts(const LightCandidate& wave, const std::vector<LeftOfRun>& left,
                                     const Thresholds::Scoring& limits) {

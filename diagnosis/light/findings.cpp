@@ -20,7 +20,7 @@ std::vector<std::string> light_kinds(const LightTrial& trial, const LightCandida
   std::vector<std::string> kinds;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const LightCandidate& c = all[trial.candidates[i]];
-    if (c.is_empirical()) continue;
+    if (c.is_empirical) continue;
     kinds.push_back(is_dark(trial, all, i) ? "led_failed" : c.kind.name);
   }
   std::sort(kinds.begin(), kinds.end());
@@ -30,7 +30,7 @@ std::vector<std::string> light_kinds(const LightTrial& trial, const LightCandida
 std::string light_label(const LightTrial& trial, const LightCandidates& all) {
   std::string label;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
-    std::string name = all[trial.candidates[i]].label;
+    std::string name = all[trial.candidates[i]].name;
     if (is_dark(trial, all, i)) name.replace(0, name.find('['), "led_failed");
     label += (label.empty() ? "" : " and ") + name;
   }
@@ -146,7 +146,7 @@ std::vector<FoundEffect> found_light_effects(const LightAnswer& answer,
   const LightTrial& chosen = answer.chosen();
   std::vector<FoundEffect> effects;
   for (size_t i = 0; i < chosen.candidates.size(); ++i) {
-    if (answer.all[chosen.candidates[i]].is_empirical()) continue;
+    if (answer.all[chosen.candidates[i]].is_empirical) continue;
     FoundEffect effect = found_light_effect(chosen, answer.all, i, runs);
     const inference::Name& name = answer.decision.names[i];
     effect.probability = name.probability;
@@ -185,9 +185,7 @@ std::vector<Alternative> light_alternatives(const LightAnswer& answer) {
     a.chosen = label == light_label(answer.chosen(), answer.all);
     result.push_back(std::move(a));
   }
-  std::ranges::stable_sort(result, [](const Alternative& a, const Alternative& b) {
-    return a.log_evidence_relative > b.log_evidence_relative;
-  });
+  std::ranges::stable_sort(result, std::greater(), &Alternative::log_evidence_relative);
   if (result.size() > most) result.resize(most);
   return result;
 }
@@ -205,8 +203,8 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
   const double beyond = std::max(1.0, chi2 - samples);
   for (size_t i = 0; i < all.list.size(); ++i) {
     const LightCandidate& c = all[i];
-    if (!c.is_empirical() || !c.is_linear()) continue;
-    const auto n = static_cast<Eigen::Index>(c.fitted());
+    if (!c.is_empirical || !c.is_linear) continue;
+    const auto n = static_cast<Eigen::Index>(c.parameters);
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
     for (const FittedRun& run : runs) {
@@ -224,8 +222,7 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
   for (const auto& [variable, s] : strength) {
     if (s > all.limits.location.min_dependence) result.push_back({variable, s});
   }
-  std::ranges::stable_sort(result,
-                           [](const auto& a, const auto& b) { return a.strength > b.strength; });
+  std::ranges::stable_sort(result, std::greater(), &Where::Dependence::strength);
   return result;
 }
 
@@ -259,8 +256,7 @@ std::string light_sentence(const Diagnosis& d) {
     std::string text = d.effects.size() == 1 ? "Missing: " : "Missing together: ";
     for (size_t i = 0; i < d.effects.size(); ++i) {
       const FoundEffect& e = d.effects[i];
-      std::string name = e.kind;
-      std::ranges::replace(name, '_', ' ');
+      std::string name = in_words(e.kind);
       for (const FittedParameter& p : e.parameters) {
         if (p.key != "index") continue;
         for (size_t k = 0; k < p.value.size(); ++k) {

@@ -6,7 +6,6 @@
 
 #include "core/numerics/linear.h"
 #include "core/parallel.h"
-#include "diagnosis/light/domain.h"
 
 namespace photorque {
 namespace {
@@ -14,7 +13,7 @@ namespace {
 // For the effect of the first of `terms` with the numbers x: the part of its χ² that the strengths
 // of each other term cannot reproduce. The first entry is the χ² of the whole effect.
 Eigen::VectorXd distinct_chi2(const LightTrial& about, const LightCandidates& all,
-                              const std::vector<inference::Term<LightStart>>& terms,
+                              const LightCandidates::Terms& terms,
                               const std::vector<FittedRun>& runs, const std::vector<double>& x) {
   Eigen::MatrixXd H;
   for (const FittedRun& run : runs) {
@@ -59,8 +58,8 @@ Eigen::VectorXd distinct_chi2_of_switch(const LightTrial& own, const LightTrial&
                                         const LightCandidates& all,
                                         const std::vector<size_t>& others,
                                         const std::vector<FittedRun>& runs) {
-  const LightTrial bare = fit_light(all, without, runs, 25);
-  const std::vector<double> gains = LightDomain(all).gains(bare, others, runs);
+  const LightTrial bare = all.fit(without, runs, 25);
+  const std::vector<double> gains = all.gains(bare, others, runs);
   const double whole = bare.fit.chi2 - own.fit.chi2;
   Eigen::VectorXd left(static_cast<Eigen::Index>(others.size()) + 1);
   left[0] = whole;
@@ -84,11 +83,11 @@ std::vector<inference::Checks::Place> other_light_places(const LightTrial& trial
     if (is_free && all[i].kind.name == named.kind.name) places.emplace_back(i, 0.0);
   }
   constexpr int iterations = 12;
-  const LightTrial own = fit_light(all, trial, runs, iterations);
+  const LightTrial own = all.fit(trial, runs, iterations);
   parallel_for(places.size(), threads, [&](size_t k) {
     LightTrial there = trial;
     there.candidates[which] = places[k].first;
-    places[k].second = own.log_evidence - fit_light(all, there, runs, iterations).log_evidence;
+    places[k].second = own.log_evidence - all.fit(there, runs, iterations).log_evidence;
   });
   return places;
 }
@@ -99,18 +98,19 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
   const LightCandidates& all = answer.all;
   const LightTrial without = without_candidate(chosen, which);
   const double within = all.limits.search.min_log_evidence_gain;
-  const LightTrial own = fit_light(all, chosen, runs, 25);
+  const LightTrial own = all.fit(chosen, runs, 25);
   const LightCandidate& named = all[chosen.candidates[which]];
   std::vector<size_t> others;
-  std::vector<inference::Term<LightStart>> terms = {{chosen.candidates[which], {chosen.x[which]}}};
+  LightCandidates::Terms terms = {{chosen.candidates[which], {chosen.x[which]}}};
   for (size_t i = 0; i < all.list.size(); ++i) {
     const LightCandidate& c = all[i];
-    if (c.is_empirical() || c.kind.name == named.kind.name || !c.is_linear()) continue;
+    if (c.is_empirical || c.kind.name == named.kind.name || !(c.is_linear || c.parameters == 0))
+      continue;
     if (c.kind.index == named.kind.index && c.index != named.index) continue;
     others.push_back(i);
     terms.push_back({i, {c.start()}});
   }
-  const Eigen::VectorXd left = named.has_strength()
+  const Eigen::VectorXd left = named.has_strength
                                    ? distinct_chi2(without, all, terms, runs, chosen.x[which])
                                    : distinct_chi2_of_switch(own, without, all, others, runs);
   std::set<std::string> rivals;
@@ -122,8 +122,7 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
     const double gain = left[0];
     if (left[static_cast<Eigen::Index>(k) + 1] > beyond * within + of_all * gain) continue;
     if (rivals.contains(c.kind.name)) continue;
-    const LightTrial rival =
-        fit_light(all, with_candidate(without, others[k], c.start()), runs, 25);
+    const LightTrial rival = all.fit(with_candidate(without, others[k], c.start()), runs, 25);
     if (rival.log_evidence > own.log_evidence - within) rivals.insert(c.kind.name);
   }
   // Adds the candidates that explain the recordings equally well in its place.
@@ -135,7 +134,7 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
     if (rest.size() != 1) continue;
     const LightCandidate& c = all[rest.front()];
     const bool is_elsewhere = c.kind.index == named.kind.index && c.index != named.index;
-    if (!c.is_empirical() && !is_elsewhere && c.kind.name != named.kind.name) {
+    if (!c.is_empirical && !is_elsewhere && c.kind.name != named.kind.name) {
       rivals.insert(c.kind.name);
     }
   }

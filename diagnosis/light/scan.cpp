@@ -77,7 +77,7 @@ std::vector<LightStart> best_of_grid(const LightCandidate& c, const std::vector<
   constexpr size_t few = 12, most = 3;
   const std::vector<std::vector<double>> grid = grid_of_starts(c);
   std::vector<LightStart> result;
-  if (grid.size() <= few || !c.is_empirical() || c.kind.in_circuit) {
+  if (grid.size() <= few || !c.is_empirical || c.kind.in_circuit) {
     for (const std::vector<double>& x : grid) result.push_back({x});
     return result;
   }
@@ -93,27 +93,26 @@ std::vector<LightStart> best_of_grid(const LightCandidate& c, const std::vector<
 
 }  // namespace
 
-std::vector<std::vector<LightStart>> starts_from_scan(const LightTrial& parent,
-                                                      const LightCandidates& all,
-                                                      const std::vector<size_t>& candidates,
-                                                      const std::vector<FittedRun>& runs,
-                                                      int threads) {
+std::vector<std::vector<LightStart>> LightCandidates::starts(const Trial& parent,
+                                                             const std::vector<size_t>& candidates,
+                                                             const Runs& runs, const Runs&,
+                                                             int threads) const {
   std::vector<std::vector<LightStart>> result(candidates.size());
-  const std::vector<LeftOfRun> left = left_of(parent, all, runs);
+  const std::vector<LeftOfRun> left = left_of(parent, *this, runs);
   parallel_for(candidates.size(), threads, [&](size_t i) {
-    const LightCandidate& c = all[candidates[i]];
+    const LightCandidate& c = list[candidates[i]];
     switch (c.kind.scan) {
       case LightEffectKind::Scan::shadow:
-        result[i] = shadow_starts(parent, all, runs, c.index == 1);
+        result[i] = shadow_starts(parent, *this, runs, c.index == 1);
         break;
       case LightEffectKind::Scan::wave:
-        result[i] = wave_starts(c, left, all.limits.scoring);
+        result[i] = wave_starts(c, left, limits.scoring);
         break;
       case LightEffectKind::Scan::trapped:
-        result[i] = {{trapped_interval(parent, all, runs)}};
+        result[i] = {{trapped_interval(parent, *this, runs)}};
         break;
       case LightEffectKind::Scan::none:
-        result[i] = best_of_grid(c, left, all.limits.scoring);
+        result[i] = best_of_grid(c, left, limits.scoring);
         break;
     }
   });

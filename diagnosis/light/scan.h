@@ -14,14 +14,6 @@ struct LeftOfRun {
   SignalSlopes slopes;
 };
 
-// For each candidate the few starts with the largest predicted gains; empty if no gain is
-// predicted.
-std::vector<std::vector<LightStart>> starts_from_scan(const LightTrial& parent,
-                                                      const LightCandidates& all,
-                                                      const std::vector<size_t>& candidates,
-                                                      const std::vector<FittedRun>& runs,
-                                                      int threads);
-
 // Opaque boxes that explain missing light of the scans, as numbers of the effect unmodelled_shadow,
 // best first. A plane above the receiver is carved: an element may be opaque only if all light
 // through it is missing at its destination. The result is the rectangle about the largest patch of

@@ -1,4 +1,4 @@
-#include "diagnosis/light/segments.h"
+#include "diagnosis/light/findings.h"
 
 #include <algorithm>
 
@@ -23,51 +23,6 @@ std::vector<size_t> segments_of(const LightRun& run, size_t count) {
   return segment;
 }
 
-// χ² of every segment, each predicted by a fit to the rows of the other folds.
-class Segments {
- public:
-  Segments(const LightCandidates& all, const std::vector<FittedRun>& runs, int threads)
-      : all_(all), runs_(runs), threads_(threads), count_(all.limits.discrepancy.segments) {
-    for (const FittedRun& run : runs) segment_.push_back(segments_of(*run.run, count_));
-    fitted_.resize(folds);
-    parallel_for(folds, threads, [&](size_t fold) {
-      for (size_t r = 0; r < runs.size(); ++r) {
-        std::vector<size_t> rows;
-        for (size_t row = 0; row < segment_[r].size(); ++row) {
-          if (segment_[r][row] % folds != fold) rows.push_back(row);
-        }
-        fitted_[fold].push_back(part_of(runs[r], rows, all.nominal));
-      }
-    });
-  }
-
-  std::vector<double> chi2(const LightTrial& trial) const {
-    std::vector<double> result(count_, 0.0);
-    parallel_for(folds, threads_, [&](size_t fold) {
-      const LightTrial others =
-          fit_light(all_, trial, fitted_[fold], all_.limits.fitting.brief_iterations);
-      for (size_t r = 0; r < runs_.size(); ++r) {
-        const Eigen::VectorXd left = residuals_of(others, all_, runs_[r]);
-        const size_t of_a_row = runs_[r].run->samples() / runs_[r].run->rows();
-        for (size_t i = 0; i < runs_[r].run->samples(); ++i) {
-          const size_t segment = segment_[r][i / of_a_row];
-          const double off = left[static_cast<Eigen::Index>(i)];
-          if (segment % folds == fold) result[segment] += off * off;
-        }
-      }
-    });
-    return result;
-  }
-
- private:
-  const LightCandidates& all_;
-  const std::vector<FittedRun>& runs_;
-  int threads_;
-  size_t count_;
-  std::vector<std::vector<size_t>> segment_;    // [run][row]: the segment of a row
-  std::vector<std::vector<FittedRun>> fitted_;  // [fold][run]: the rows that are fitted
-};
-
 }  // namespace
 
 std::optional<double> gain_over_segments(const LightTrial& trial, size_t which,
@@ -76,9 +31,38 @@ std::optional<double> gain_over_segments(const LightTrial& trial, size_t which,
   for (const FittedRun& run : runs) {
     if (run.run->rows() < 2 * all.limits.discrepancy.segments) return std::nullopt;
   }
-  const Segments segments(all, runs, threads);
-  return inference::gain_sigma(segments.chi2(without_candidate(trial, which)),
-                               segments.chi2(trial));
+  const size_t count = all.limits.discrepancy.segments;
+  std::vector<std::vector<size_t>> segment;  // [run][row]: the segment of a row
+  for (const FittedRun& run : runs) segment.push_back(segments_of(*run.run, count));
+  std::vector<std::vector<FittedRun>> fitted(folds);  // [fold][run]: the rows that are fitted
+  parallel_for(folds, threads, [&](size_t fold) {
+    for (size_t r = 0; r < runs.size(); ++r) {
+      std::vector<size_t> rows;
+      for (size_t row = 0; row < segment[r].size(); ++row) {
+        if (segment[r][row] % folds != fold) rows.push_back(row);
+      }
+      fitted[fold].push_back(part_of(runs[r], rows, all.nominal));
+    }
+  });
+  // χ² of every segment, each predicted by a fit to the rows of the other folds.
+  const auto chi2 = [&](const LightTrial& explanation) {
+    std::vector<double> result(count, 0.0);
+    parallel_for(folds, threads, [&](size_t fold) {
+      const LightTrial others =
+          all.fit(explanation, fitted[fold], all.limits.fitting.brief_iterations);
+      for (size_t r = 0; r < runs.size(); ++r) {
+        const Eigen::VectorXd left = residuals_of(others, all, runs[r]);
+        const size_t of_a_row = runs[r].run->samples() / runs[r].run->rows();
+        for (size_t i = 0; i < runs[r].run->samples(); ++i) {
+          const size_t in = segment[r][i / of_a_row];
+          const double off = left[static_cast<Eigen::Index>(i)];
+          if (in % folds == fold) result[in] += off * off;
+        }
+      }
+    });
+    return result;
+  };
+  return inference::gain_sigma(chi2(without_candidate(trial, which)), chi2(trial));
 }
 
 }  // namespace photorque

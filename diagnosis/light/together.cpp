@@ -24,15 +24,6 @@ constexpr const char* of_light = "attitude_bias";
 constexpr double any_tilt_rad = 0.1, known_tilt_rad = 0.01;
 constexpr double beyond_doubt_sigma = 5.0;
 
-double tilt_sigma(const Tilt& tilt) {
-  return tilt.bias_rad.cwiseQuotient(tilt.sigma_rad).norm();
-}
-
-bool has_tilt(const AttitudeModel& model) {
-  return std::ranges::any_of(model.disturbances,
-                             [](const Disturbance& d) { return d.kind == of_motion; });
-}
-
 Diagnosis diagnose_light_with_prior(const LightRecorded& light, const Tilt& tilt) {
   NominalLight nominal = light.nominal;
   add_tilt_prior(light.lab, tilt.bias_rad, tilt.sigma_rad, nominal);
@@ -106,10 +97,6 @@ Diagnosis light_with_any_tilt(const LightRecorded& light) {
   return d;
 }
 
-bool measures_tilt(const std::optional<Tilt>& tilt) {
-  return tilt && tilt->sigma_rad.maxCoeff() < known_tilt_rad;
-}
-
 Disturbance tilt_prior_disturbance(const NominalModel& nominal, const Tilt& tilt) {
   Disturbance d = make_disturbance_of(
       of_motion, {{tilt_key, {-tilt.bias_rad.x(), -tilt.bias_rad.y()}}}, nominal.context());
@@ -127,7 +114,7 @@ void add_tilt(const std::optional<Tilt>& tilt, Diagnosis& motion, Diagnosis& lig
   };
   std::erase_if(light.priors_refined, is_tilt);
   if (!tilt) return;
-  const double sigma = tilt_sigma(*tilt);
+  const double sigma = tilt->bias_rad.cwiseQuotient(tilt->sigma_rad).norm();
   std::erase_if(motion.priors_refined, is_tilt);
   if (!(sigma > beyond_doubt_sigma)) return;
   const auto numbers = [](const Vec2& v) { return std::vector<double>{v.x(), v.y()}; };
@@ -161,12 +148,6 @@ std::map<double, Quat> attitudes_of(const Diagnosis& motion, const std::string& 
   return at;
 }
 
-Vec3 turn(const Quat& from, const Quat& to) {
-  const Eigen::AngleAxisd by(from.conjugate() * to);
-  const double angle = by.angle() > pi ? by.angle() - 2.0 * pi : by.angle();
-  return angle * by.axis();
-}
-
 // Cubic interpolation with slopes from the neighbouring points. Returns nothing outside the
 // recorded time or in a gap.
 std::optional<Quat> between(const std::map<double, Quat>& all, double time_s, double max_gap_s) {
@@ -177,6 +158,9 @@ std::optional<Quat> between(const std::map<double, Quat>& all, double time_s, do
   const auto last = std::prev(next);
   const double h = next->first - last->first;
   if (h > max_gap_s) return std::nullopt;
+  const auto turn = [](const Quat& from, const Quat& to) {
+    return turn_vector(from.conjugate() * to);
+  };
   const Vec3 step = turn(last->second, next->second);
   const auto before = last == all.begin() ? last : std::prev(last);
   const auto after = std::next(next) == all.end() ? next : std::next(next);
@@ -190,35 +174,6 @@ std::optional<Quat> between(const std::map<double, Quat>& all, double time_s, do
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& more) {
   to.insert(to.end(), more.begin(), more.end());
-}
-
-double mean_of(double a, int64_t samples_a, double b, int64_t samples_b) {
-  const auto all = static_cast<double>(samples_a + samples_b);
-  return all > 0.0 ? (a * static_cast<double>(samples_a) + b * static_cast<double>(samples_b)) / all
-                   : 0.0;
-}
-
-Holdout both_held(const Holdout& a, const Holdout& b) {
-  Holdout both = a;
-  both.rms_before.insert(b.rms_before.begin(), b.rms_before.end());
-  both.rms_after.insert(b.rms_after.begin(), b.rms_after.end());
-  both.chi2_per_sample_before =
-      mean_of(a.chi2_per_sample_before, a.samples, b.chi2_per_sample_before, b.samples);
-  both.chi2_per_sample_after =
-      mean_of(a.chi2_per_sample_after, a.samples, b.chi2_per_sample_after, b.samples);
-  both.samples = a.samples + b.samples;
-  both.explained_fraction = std::min(a.explained_fraction, b.explained_fraction);
-  // The larger excess of the two is reported.
-  if (b.predictive && (!a.predictive || b.predictive->sigma > a.predictive->sigma)) {
-    both.predictive = b.predictive;
-  }
-  return both;
-}
-
-std::string word_of(Verdict verdict) {
-  std::string word = name_of(verdict);
-  std::ranges::replace(word, '_', ' ');
-  return word;
 }
 
 }  // namespace
@@ -245,7 +200,8 @@ Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light) {
   take_attitudes(of_motion_first, light.recordings);
   take_attitudes(of_motion_first, light.holdouts);
   // If a tilt is stated, it is not fitted.
-  if (has_tilt(motion.nominal.model)) {
+  const auto is_tilt = [](const Disturbance& d) { return d.kind == of_motion; };
+  if (std::ranges::any_of(motion.nominal.model.disturbances, is_tilt)) {
     return joined(
         of_motion_first,
         diagnose_light(light.lab, light.nominal, light.recordings, light.holdouts, light.how),
@@ -253,7 +209,8 @@ Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light) {
   }
   Diagnosis of_light_alone = light_with_any_tilt(light);
   std::optional<Tilt> seen = tilt_of_light(of_light_alone);
-  if (of_light_alone.verdict == Verdict::unexplained || !measures_tilt(seen)) seen.reset();
+  const bool measures_tilt = seen && seen->sigma_rad.maxCoeff() < known_tilt_rad;
+  if (of_light_alone.verdict == Verdict::unexplained || !measures_tilt) seen.reset();
   if (seen)
     motion.nominal.model.disturbances.push_back(tilt_prior_disturbance(motion.nominal, *seen));
   const Diagnosis of_both = seen ? moved() : of_motion_first;
@@ -285,21 +242,25 @@ Diagnosis joined(const Diagnosis& motion, const Diagnosis& light, const std::opt
   d.confidence = motion.confidence * light.confidence;
   d.sentence = (is_tilted ? "The platform is rotated relative to its recorded attitude. Motion: "
                           : "Motion: ") +
-               word_of(motion.verdict) + ". " + motion.sentence +
-               " Light: " + word_of(light.verdict) + ". " + light.sentence;
+               in_words(name_of(motion.verdict)) + ". " + motion.sentence +
+               " Light: " + in_words(name_of(light.verdict)) + ". " + light.sentence;
   if (d.because.empty()) d.because = light.because;
   append(d.where.channels, light.where.channels);
-  std::ranges::stable_sort(d.where.channels, [](const auto& a, const auto& b) {
-    return a.chi2_per_sample > b.chi2_per_sample;
-  });
+  std::ranges::stable_sort(d.where.channels, std::greater(),
+                           &Where::ChannelMisfit::chi2_per_sample);
   append(d.where.depends_on, light.where.depends_on);
-  d.chi2_per_sample_before = mean_of(motion.chi2_per_sample_before, motion.samples,
-                                     light.chi2_per_sample_before, light.samples);
-  d.chi2_per_sample_after = mean_of(motion.chi2_per_sample_after, motion.samples,
-                                    light.chi2_per_sample_after, light.samples);
+  d.chi2_per_sample_before = weighted_mean(motion.chi2_per_sample_before, motion.samples,
+                                           light.chi2_per_sample_before, light.samples);
+  d.chi2_per_sample_after = weighted_mean(motion.chi2_per_sample_after, motion.samples,
+                                          light.chi2_per_sample_after, light.samples);
   d.samples = motion.samples + light.samples;
   if (motion.holdout && light.holdout) {
-    d.holdout = both_held(*motion.holdout, *light.holdout);
+    d.holdout->rms_before.insert(light.holdout->rms_before.begin(),
+                                 light.holdout->rms_before.end());
+    d.holdout->rms_after.insert(light.holdout->rms_after.begin(), light.holdout->rms_after.end());
+    d.holdout->explained_fraction =
+        std::min(d.holdout->explained_fraction, light.holdout->explained_fraction);
+    add_held_out(*light.holdout, *d.holdout);
   } else if (light.holdout) {
     d.holdout = light.holdout;
   }

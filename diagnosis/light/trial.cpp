@@ -56,10 +56,18 @@ AtState evaluated(const FittedRun& run, const LightState& state, bool slopes) {
   return at;
 }
 
+// The residuals at a state, changed by the shifts of the uncertain nominal values.
+Eigen::VectorXd shifted(Eigen::VectorXd residuals, const LightTrial& trial, const FittedRun& run) {
+  if (trial.priors.empty()) return residuals;
+  return residuals - *run.prior_slopes *
+                         Eigen::Map<const Eigen::VectorXd>(
+                             trial.priors.data(), static_cast<Eigen::Index>(trial.priors.size()));
+}
+
 // Whether a law multiplies the light. The signals are then linear in its strengths, and derivatives
 // require no fields.
 bool is_factor(const LightCandidate& c) {
-  return c.is_empirical() && !c.kind.in_circuit;
+  return c.is_empirical && !c.kind.in_circuit;
 }
 
 Eigen::VectorXd factor_slope(const LightCandidate& c, std::vector<double> x, size_t number,
@@ -131,7 +139,7 @@ std::vector<inference::Parameter> parameters_of(const LightCandidates& all,
     const LightCandidate::Number& n = c.numbers[place.number];
     const double value = x[place.member][place.number];
     inference::Parameter p;
-    p.name = c.label + "." + c.kind.parameters[n.parameter].key;
+    p.name = c.name + "." + c.kind.parameters[n.parameter].key;
     p.value = std::clamp(value, n.lowest, n.highest);
     p.mean = n.is_strength ? 0.0 : value;
     p.sigma = all.limits.evidence.fit_prior_widths * n.scale;
@@ -154,13 +162,13 @@ bool is_point(const LightCandidate& c, const LightTrial& trial, size_t member,
 double log_evidence_of(const LightTrial& trial, const LightCandidates& all) {
   const Thresholds::Evidence& limits = all.limits.evidence;
   if (!std::isfinite(trial.fit.chi2)) return -1e300;
-  Eigen::MatrixXd hessian = trial.fit.hessian.dense();
+  inference::ArrowMatrix hessian = trial.fit.hessian;
   double result = -0.5 * trial.fit.chi2;
   inference::Strengths strengths;
   auto at = static_cast<Eigen::Index>(trial.priors.size());
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const LightCandidate& c = all[trial.candidates[i]];
-    result += c.is_empirical() ? limits.log_prior_empirical : limits.log_prior_effect;
+    result += c.is_empirical ? limits.log_prior_empirical : limits.log_prior_effect;
     for (size_t k = 0; k < c.numbers.size(); ++k) {
       const LightCandidate::Number& n = c.numbers[k];
       // A number that a scan selects among all rows costs as much as a fitted one.
@@ -169,9 +177,7 @@ double log_evidence_of(const LightTrial& trial, const LightCandidates& all) {
         continue;
       }
       if (n.is_strength && is_point(c, trial, i, at)) {
-        hessian.row(at).setZero();
-        hessian.col(at).setZero();
-        hessian(at, at) = 1.0;
+        hessian.hold(at);
       } else if (n.is_strength) {
         strengths.at.push_back(at);
         strengths.owner.push_back(i);
@@ -180,17 +186,15 @@ double log_evidence_of(const LightTrial& trial, const LightCandidates& all) {
         if (n.lowest == 0.0 || n.highest == 0.0) result += std::log(2.0);  // half-Gaussian prior
       } else {
         const double wide = n.scale * limits.fit_prior_widths;
-        hessian(at, at) += 1.0 / (n.scale * n.scale) - 1.0 / (wide * wide);
+        hessian.add_to_diagonal(at, 1.0 / (n.scale * n.scale) - 1.0 / (wide * wide));
         result -= std::log(n.scale);
       }
       ++at;
     }
   }
-  if (hessian.rows() > 0) {
-    result -= 0.5 * inference::log_determinant(hessian);
-    result += inference::log_strength_evidence(strengths, trial.fit.shared_posterior(),
-                                               trial.candidates.size(), limits);
-  }
+  result -= 0.5 * hessian.log_determinant();
+  result += inference::log_strength_evidence(strengths, trial.fit.shared_posterior(),
+                                             trial.candidates.size(), limits);
   return std::isfinite(result) ? result : -1e300;
 }
 
@@ -269,77 +273,60 @@ Eigen::Index fitted_numbers(const LightTrial& trial, const LightCandidates& all)
   return static_cast<Eigen::Index>(trial.priors.size() + places_of(all, trial.candidates).size());
 }
 
-LightTrial fit_light(const LightCandidates& all, const LightTrial& start,
-                     const std::vector<FittedRun>& runs, int max_iterations) {
-  const std::vector<size_t>& candidates = start.candidates;
-  const std::vector<double>& priors = start.priors;
-  const std::vector<Place> places = places_of(all, candidates);
-  const auto n_priors = static_cast<Eigen::Index>(priors.size());
-  const auto numbers_at = [&](const Eigen::VectorXd& values) {
-    Numbers at = start.x;
+LightTrial LightCandidates::fit(const Trial& start, const Runs& runs, int max_iterations) const {
+  const std::vector<Place> places = places_of(*this, start.candidates);
+  const auto n_priors = static_cast<Eigen::Index>(start.priors.size());
+  const auto trial_at = [&](const Eigen::VectorXd& values) {
+    Trial at;
+    at.candidates = start.candidates;
+    at.priors.assign(values.begin(), values.begin() + n_priors);
+    at.x = start.x;
     for (size_t k = 0; k < places.size(); ++k) {
-      at[places[k].member][places[k].number] = values[n_priors + static_cast<Eigen::Index>(k)];
+      at.x[places[k].member][places[k].number] = values[n_priors + static_cast<Eigen::Index>(k)];
     }
     return at;
   };
   const auto residuals = [&](const Eigen::VectorXd& values, Eigen::Index which, Eigen::VectorXd& r,
                              Eigen::MatrixXd* slopes) {
     const FittedRun& run = runs[static_cast<size_t>(which)];
-    const Numbers now = numbers_at(values);
-    const AtState at = evaluated(run, acted(all, candidates, now), slopes != nullptr);
-    r = at.residuals;
-    if (n_priors > 0) r -= *run.prior_slopes * values.head(n_priors);
-    if (slopes == nullptr) return;
-    slopes->resize(r.size(), values.size());
-    if (n_priors > 0) slopes->leftCols(n_priors) = *run.prior_slopes;
-    for (size_t k = 0; k < places.size(); ++k) {
-      slopes->col(n_priors + static_cast<Eigen::Index>(k)) =
-          slope_by(all, candidates, now, places[k], run, at);
+    if (slopes == nullptr) {
+      r = residuals_of(trial_at(values), *this, run);
+      return;
     }
+    LightSlopes found = slopes_of(trial_at(values), *this, {}, run);
+    r = std::move(found.residuals);
+    *slopes = std::move(found.slopes);
   };
   inference::Parameters parameters;
   parameters.of_run.resize(runs.size());
-  parameters.shared = parameters_of(all, candidates, start.x, priors);
+  parameters.shared = parameters_of(*this, start.candidates, start.x, start.priors);
   const inference::ResidualModel model(parameters, residuals);
-  inference::Options options;
-  options.max_iterations = max_iterations;
-  LightTrial trial;
-  trial.fit = inference::fit(model, model.start(), options);
-  trial.candidates = candidates;
-  trial.priors.assign(trial.fit.at.data(), trial.fit.at.data() + n_priors);
-  trial.x = numbers_at(trial.fit.at);
-  judge(trial, all);
+  inference::Fit found = inference::fit(model, model.start(), {.max_iterations = max_iterations});
+  Trial trial = trial_at(found.at);
+  trial.fit = std::move(found);
+  judge(trial, *this);
   return trial;
 }
 
 LightTrial nominal_light_trial(const LightCandidates& all, const std::vector<FittedRun>& runs) {
   LightTrial start;
   start.priors.assign(all.nominal.uncertain.size(), 0.0);
-  return fit_light(all, start, runs, 25);
+  return all.fit(start, runs, 25);
 }
 
 Eigen::VectorXd residuals_of(const LightTrial& trial, const LightCandidates& all,
                              const FittedRun& run) {
-  Eigen::VectorXd r = evaluated(run, state_of(trial, all), false).residuals;
-  if (!trial.priors.empty()) {
-    r -= *run.prior_slopes *
-         Eigen::Map<const Eigen::VectorXd>(trial.priors.data(),
-                                           static_cast<Eigen::Index>(trial.priors.size()));
-  }
-  return r;
+  return shifted(evaluated(run, state_of(trial, all), false).residuals, trial, run);
 }
 
-LightTrial predict_light(const LightTrial& trial, const LightCandidates& all,
-                         const std::vector<FittedRun>& runs) {
+LightTrial LightCandidates::predict(const Trial& trial, const Runs& runs) const {
   LightTrial result = trial;
   result.fit.run_chi2.clear();
-  result.fit.run_samples.clear();
   result.fit.chi2 = 0.0;
   result.fit.samples = 0;
   for (const FittedRun& run : runs) {
-    const Eigen::VectorXd r = residuals_of(trial, all, run);
+    const Eigen::VectorXd r = residuals_of(trial, *this, run);
     result.fit.run_chi2.push_back(r.squaredNorm());
-    result.fit.run_samples.push_back(r.size());
     result.fit.chi2 += r.squaredNorm();
     result.fit.samples += r.size();
   }
@@ -348,9 +335,9 @@ LightTrial predict_light(const LightTrial& trial, const LightCandidates& all,
 }
 
 LightSlopes slopes_of(const LightTrial& trial, const LightCandidates& all,
-                      const std::vector<inference::Term<LightStart>>& more, const FittedRun& run) {
+                      const LightCandidates::Terms& more, const FittedRun& run) {
   const AtState at = evaluated(run, state_of(trial, all), true);
-  LightSlopes result{residuals_of(trial, all, run), {}};
+  LightSlopes result{shifted(at.residuals, trial, run), {}};
   const auto n_priors = static_cast<Eigen::Index>(trial.priors.size());
   std::vector<Eigen::VectorXd> columns;
   for (const Place& place : places_of(all, trial.candidates)) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "diagnosis/light/candidate.h"
-#include "inference/domain.h"
 #include "inference/estimator/fit.h"
 
 namespace photorque {
@@ -11,12 +10,6 @@ struct LightTrial : inference::Explanation {
   inference::Fit fit;
   std::vector<double> priors;          // shifts of uncertain values, in sigmas
   std::vector<std::vector<double>> x;  // parameters of each candidate
-};
-
-// Start of a candidate's fit.
-struct LightStart {
-  std::vector<double> x;
-  double gain = inference::infinity;  // predicted fall of χ² from a scan; infinite without one
 };
 
 // Whether a lamp's derating, fitted as `column`, leaves no light.
@@ -28,18 +21,10 @@ LightState state_of(const LightTrial& trial, const LightCandidates& all);
 // The trial without candidates.
 LightTrial nominal_light_trial(const LightCandidates& all, const std::vector<FittedRun>& runs);
 
-// Fits the candidates of `start` with the priors, starting from its numbers.
-LightTrial fit_light(const LightCandidates& all, const LightTrial& start,
-                     const std::vector<FittedRun>& runs, int max_iterations);
-
 // The trial with one more candidate that has the numbers `x`, or without its candidate `which`; not
 // fitted.
 LightTrial with_candidate(LightTrial trial, size_t candidate, const std::vector<double>& x);
 LightTrial without_candidate(LightTrial trial, size_t which);
-
-// Predicts other recordings with the trial's numbers without a fit.
-LightTrial predict_light(const LightTrial& trial, const LightCandidates& all,
-                         const std::vector<FittedRun>& runs);
 
 // Residuals of one recording.
 Eigen::VectorXd residuals_of(const LightTrial& trial, const LightCandidates& all,
@@ -52,7 +37,7 @@ struct LightSlopes {
   Eigen::MatrixXd slopes;
 };
 LightSlopes slopes_of(const LightTrial& trial, const LightCandidates& all,
-                      const std::vector<inference::Term<LightStart>>& more, const FittedRun& run);
+                      const LightCandidates::Terms& more, const FittedRun& run);
 
 // Fall of χ² by a linear fit with the normal matrix H and the gradient g.
 double linear_gain(Eigen::MatrixXd H, const Eigen::VectorXd& g);

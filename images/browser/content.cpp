@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/extremes.h"
+#include "core/numerics/series.h"
 #include "core/text/format.h"
 #include "images/drawing/colour.h"
 #include "images/drawing/plot.h"
@@ -137,11 +137,8 @@ Json map_content(const Map& map, int factor) {
 Json colours_json(const ColourMap& map) {
   std::string hex;
   for (const Rgb& colour : map.colours) {
-    static constexpr char digits[] = "0123456789abcdef";
-    for (const uint8_t byte : rgb_bytes(colour)) {
-      hex += digits[byte >> 4];
-      hex += digits[byte & 15];
-    }
+    const auto [red, green, blue] = rgb_bytes(colour);
+    hex += printed("%02x%02x%02x", red, green, blue);
   }
   return hex;
 }

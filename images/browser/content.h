@@ -1,23 +1,27 @@
 // Content of a page as the JSON that its script reads, and the script itself.
 #pragma once
 
-#include <cstdint>
+#include <bit>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "core/product.h"
+#include "core/text/format.h"
 #include "images/browser/run_page.h"
 #include "images/drawing/colour.h"
 
 namespace photorque {
 
-// Encoded numbers {"f32": "…"}, {"f64": "…"} or {"u32": "…"}: little-endian, in base64. NaN is
-// preserved.
-nlohmann::ordered_json packed(std::span<const float> numbers);
-nlohmann::ordered_json packed(std::span<const double> numbers);
-nlohmann::ordered_json packed(std::span<const uint32_t> numbers);
+// Encoded numbers {"f32": "…"}, {"f64": "…"}, {"u32": "…"} or {"u16": "…"}: little-endian, in
+// base64. NaN is preserved.
+template <class T>
+nlohmann::ordered_json packed(const std::vector<T>& numbers) {
+  static_assert(std::endian::native == std::endian::little, "pages hold little-endian numbers");
+  const std::string type = (std::is_integral_v<T> ? "u" : "f") + std::to_string(8 * sizeof(T));
+  return {{type, base64(std::as_bytes(std::span(numbers)))}};
+}
 // As {"f32": …}, rounded to single precision.
 nlohmann::ordered_json packed_rounded(std::span<const double> numbers);
 // Encoded as {"u16": "…", "low", "step"}: value = low + step · n for n < 65535; n = 65535 is NaN.

@@ -1,6 +1,5 @@
 #include "images/browser/run_page.h"
 
-#include <bit>
 #include <cmath>
 #include "core/text/format.h"
 #include "images/browser/content.h"
@@ -9,13 +8,6 @@ namespace photorque {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-static_assert(std::endian::native == std::endian::little, "pages hold little-endian numbers");
-
-template <class T>
-Json packed_as(const char* type, std::span<const T> numbers) {
-  return {{type, base64(std::as_bytes(numbers))}};
-}
 
 // The Content-Security-Policy forbids the page and its script to fetch anything.
 std::string document_html(const std::string& title, const Provenance& provenance,
@@ -34,21 +26,8 @@ std::string document_html(const std::string& title, const Provenance& provenance
 
 }  // namespace
 
-Json packed(std::span<const float> numbers) {
-  return packed_as("f32", numbers);
-}
-
-Json packed(std::span<const double> numbers) {
-  return packed_as("f64", numbers);
-}
-
-Json packed(std::span<const uint32_t> numbers) {
-  return packed_as("u32", numbers);
-}
-
 Json packed_rounded(std::span<const double> numbers) {
-  const std::vector<float> rounded(numbers.begin(), numbers.end());
-  return packed(std::span<const float>(rounded));
+  return packed(std::vector<float>(numbers.begin(), numbers.end()));
 }
 
 Json packed_coarse(std::span<const double> numbers, double low, double high) {
@@ -60,7 +39,7 @@ Json packed_coarse(std::span<const double> numbers, double low, double high) {
     const double level = std::clamp(std::round((number - low) / step), 0.0, levels);
     coarse.push_back(std::isfinite(number) ? static_cast<uint16_t>(level) : uint16_t{65535});
   }
-  Json json = packed_as("u16", std::span<const uint16_t>(coarse));
+  Json json = packed(coarse);
   json["low"] = low;
   json["step"] = step;
   return json;

@@ -60,11 +60,6 @@ struct StageArrow {
   std::string remark = {};  // shown beside the name: "drawn 1000 times larger"
 };
 
-// Copies of the body that are shown together; the first is drawn solid, others see-through.
-struct StageBody {
-  std::string name;  // "measured"
-};
-
 // One instant or one attitude.
 struct StageState {
   std::vector<Quat> lab_from_body;  // one per body
@@ -100,7 +95,9 @@ struct SceneStage {
   std::vector<StagePart> parts;
   std::vector<Painting> paintings;
   std::vector<StageLamp> lamps;
-  std::vector<StageBody> bodies = {{"platform"}};
+  // Names of the copies of the body that are shown together; the first is drawn solid, others
+  // see-through.
+  std::vector<std::string> bodies = {"platform"};
   std::vector<StageArrow> arrows;
   std::vector<StageFigure> figures;
   std::vector<StageAxis> axes;

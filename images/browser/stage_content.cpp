@@ -17,12 +17,6 @@ Json vector_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json rgb_json(const Rgb& colour) {
-  Json bytes = Json::array();
-  for (const uint8_t byte : rgb_bytes(colour)) bytes.push_back(byte);
-  return bytes;
-}
-
 // Replaces a part by its bounding box along the body axes.
 StagePart box_of(const StagePart& part) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -60,7 +54,7 @@ std::vector<StagePart> shown_parts(std::vector<StagePart> parts, size_t most_tri
 
 Json part_json(const StagePart& part) {
   return {{"name", clean_text(part.name)},
-          {"colour", rgb_json(part.colour)},
+          {"colour", rgb_bytes(part.colour)},
           {"position", packed(part.position_m)},
           {"triangles", packed(part.triangles)}};
 }
@@ -181,8 +175,7 @@ Json stage_content(const SceneStage& stage, const Product& product, const PageLi
   }
   const std::vector<StagePart> parts = shown_parts(stage.parts, limits.triangles, boxes);
   const auto painting = [&](const Painting& one) { return painting_json(one, product); };
-  const auto rays = [](const std::vector<float>& ends) { return packed(ends); };
-  const auto body = [](const StageBody& one) { return Json{{"name", clean_text(one.name)}}; };
+  const auto body = [](const std::string& name) { return Json{{"name", clean_text(name)}}; };
   const auto figure = [](const StageFigure& one) {
     return Json{{"label", clean_text(one.label)}, {"unit", clean_text(one.unit)}};
   };
@@ -201,7 +194,7 @@ Json stage_content(const SceneStage& stage, const Product& product, const PageLi
           {"figures", list_of(stage.figures, figure)},
           {"axes", list_of(stage.axes, axis_json)},
           {"states", states_json(stage)},
-          {"rays", list_of(stage.rays_of_light_lab_m, rays)},
+          {"rays", list_of(stage.rays_of_light_lab_m, packed<float>)},
           {"light_of_state", stage.light_of_state},
           {"camera",
            {{"position", vector_json(stage.camera.position_lab_m)},

@@ -16,11 +16,12 @@ double ten_to(int exponent) {
 struct Step {
   int mantissa = 1;  // 1, 2 or 5
   int exponent = 0;
-  double size() const {
-    return exponent < 0 ? mantissa / ten_to(-exponent) : mantissa * ten_to(exponent);
-  }
+  double size() const { return multiple(1.0); }
   double multiple(double n) const {  // n·size, rounded once
     return exponent < 0 ? n * mantissa / ten_to(-exponent) : n * mantissa * ten_to(exponent);
+  }
+  Step next() const {
+    return mantissa == 5 ? Step{1, exponent + 1} : Step{mantissa == 1 ? 2 : 5, exponent};
   }
 };
 
@@ -33,17 +34,6 @@ struct Span {
 Span span_of(double low, double high, const Step& step) {
   const double slack = 1e-9 * (high - low) / step.size();
   return {std::ceil(low / step.size() - slack), std::floor(high / step.size() + slack)};
-}
-
-Step next(const Step& step) {
-  switch (step.mantissa) {
-    case 1:
-      return {2, step.exponent};
-    case 2:
-      return {5, step.exponent};
-    default:
-      return {1, step.exponent + 1};
-  }
 }
 
 int engineering_exponent(double largest) {
@@ -69,11 +59,6 @@ std::string label_with_power(const std::string& label, int exponent) {
   return result.insert(bracket + 1, power + (without_unit ? "" : " "));
 }
 
-Ticks ticks_for(const AxisRange& range, bool log, int at_most) {
-  return log ? log_ticks(range.low, range.high, at_most)
-             : linear_ticks(range.low, range.high, at_most);
-}
-
 // Ticks of angles over more than 60 deg: multiples of 15, 30, 45 or 90 deg. Empty for other axes.
 std::optional<Ticks> turn_ticks(const AxisRange& range, const std::string& label, int at_most) {
   const double span = range.high - range.low;
@@ -93,8 +78,10 @@ std::optional<Ticks> turn_ticks(const AxisRange& range, const std::string& label
 }
 
 Axis axis_with(const AxisRange& range, bool log, const std::string& label, int at_most) {
-  Axis axis{range, log, ticks_for(range, log, at_most), ""};
-  if (!log) axis.ticks = turn_ticks(range, label, std::max(at_most, 5)).value_or(axis.ticks);
+  Axis axis{range, log, {}, ""};
+  axis.ticks = log ? log_ticks(range.low, range.high, at_most)
+                   : turn_ticks(range, label, std::max(at_most, 5))
+                         .value_or(linear_ticks(range.low, range.high, at_most));
   axis.label = label_with_power(label, axis.ticks.exponent);
   return axis;
 }
@@ -119,7 +106,7 @@ Ticks linear_ticks(double low, double high, int at_most) {
   const auto count = [](const Span& of) { return of.last - of.first + 1; };
   double every = 1.0;
   while (count(span) > at_most) {
-    const Step larger = next(step);
+    const Step larger = step.next();
     const Span fewer = span_of(low, high, larger);
     // A single number does not define a scale. Use some numbers of the smaller step instead.
     if (count(fewer) < 2) {

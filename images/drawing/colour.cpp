@@ -133,12 +133,14 @@ ColourMap cool_warm() {
   return map;
 }
 
-ColourScale colour_scale(double smallest, double largest, bool signed_values) {
+ColourScale colour_scale(const Extent& extent, bool signed_values) {
+  const bool is_empty = extent.low > extent.high;
+  const double smallest = is_empty ? 0.0 : extent.low, largest = is_empty ? 0.0 : extent.high;
   // If all values have one sign and are far from zero, the colours show only their differences.
   const bool one_sided = smallest > 0.5 * largest || largest < 0.5 * smallest;
   if (signed_values && !one_sided) {
-    const double extent = std::max(std::abs(smallest), std::abs(largest));
-    const double reach = extent > 0.0 ? extent : 1.0;
+    const double farthest = std::max(std::abs(smallest), std::abs(largest));
+    const double reach = farthest > 0.0 ? farthest : 1.0;
     return {-reach, reach, cool_warm()};
   }
   // Differences of this size are rounding errors.
@@ -148,11 +150,6 @@ ColourScale colour_scale(double smallest, double largest, bool signed_values) {
   if (constant) return {std::min(largest, 0.0), std::max(largest, 0.0), viridis()};
   const bool from_zero = smallest >= 0.0 && smallest < 0.5 * largest;
   return {from_zero ? 0.0 : smallest, largest, viridis()};
-}
-
-ColourScale colour_scale(const Extent& extent, bool signed_values) {
-  if (extent.low > extent.high) return colour_scale(0.0, 0.0, signed_values);
-  return colour_scale(extent.low, extent.high, signed_values);
 }
 
 ColourScale colour_scale(const Map& map) {

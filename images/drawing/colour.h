@@ -73,12 +73,6 @@ struct ColourScale {
   const Rgb& operator()(double value) const { return map((value - low) / (high - low)); }
 };
 
-// Scale for values from `smallest` to `largest`. Unsigned: from zero, unless all values are in the
-// upper half of [0, largest], where a scale from zero would hide differences. Signed: blue to red
-// with zero in the middle, unless all values are on one side of zero and far from it. Constant
-// values get a scale that shows them as constant.
-ColourScale colour_scale(double smallest, double largest, bool signed_values);
-
 // Range of the finite values that it includes; low > high if there are none.
 struct Extent {
   double low = std::numeric_limits<double>::infinity();
@@ -90,9 +84,12 @@ struct Extent {
   }
 };
 
-// Scale for the values of a range, or the finite values of a map; [0, 1] or [−1, 1] if there are
-// none.
+// Scale for the values of a range; [0, 1] or [−1, 1] if there are none. Unsigned: from zero, unless
+// all values are in the upper half of [0, largest], where a scale from zero would hide differences.
+// Signed: blue to red with zero in the middle, unless all values are on one side of zero and far
+// from it. Constant values get a scale that shows them as constant.
 ColourScale colour_scale(const Extent& extent, bool signed_values);
+// Colour scale for the range of finite values of a map.
 ColourScale colour_scale(const Map& map);
 
 }  // namespace photorque

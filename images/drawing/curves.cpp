@@ -104,6 +104,11 @@ void draw_dots(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve
   canvas.discs(thinned(points, panel.resolution), stroke.width, stroke.colour);
 }
 
+// Whether a bar extends between two values instead of from zero.
+bool is_vertical_bar(const Plot::Curve& curve) {
+  return curve.bars && curve.x.size() == 2 && curve.x[0] == curve.x[1];
+}
+
 // Whether bars are drawn without gaps: many bars at equal steps.
 bool is_histogram(const Plot::Curve& curve) {
   constexpr size_t many = 30;
@@ -292,10 +297,6 @@ void draw_curves(Canvas& canvas, const ChartPanel& panel) {
     }
     draw_bar_numbers(canvas, panel);
   });
-}
-
-bool is_vertical_bar(const Plot::Curve& curve) {
-  return curve.bars && curve.x.size() == 2 && curve.x[0] == curve.x[1];
 }
 
 bool has_names_under_bars(const std::vector<Plot::Curve>& curves) {

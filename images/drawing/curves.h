@@ -39,11 +39,8 @@ inline constexpr double bar_half_width = 0.4;
 // Draws curves with their error bands or bars, clipped to the frame.
 void draw_curves(Canvas& canvas, const ChartPanel& panel);
 
-// Whether a bar extends between two values instead of from zero: two points at one x. Its number is
-// shown.
-bool is_vertical_bar(const Plot::Curve& curve);
-
-// Whether all curves are such bars. Then their labels are below them, and no legend is needed.
+// Whether all curves are bars between two values (two points at one x), whose numbers are shown.
+// Then their labels are below them, and no legend is needed.
 bool has_names_under_bars(const std::vector<Plot::Curve>& curves);
 
 // Size of a legend; empty if no curve has a label.

@@ -6,9 +6,7 @@
 
 #include "core/product.h"
 #include "core/provenance.h"
-#include "images/drawing/canvas.h"
-#include "images/drawing/colour.h"
-#include "images/drawing/style.h"
+#include "images/drawing/page_layout.h"
 
 namespace photorque {
 
@@ -24,23 +22,11 @@ std::vector<uint32_t> map_pixels(const Map& map, const ColourScale& scale, int c
 // Whether a signed value is within two of its standard errors of zero.
 bool is_unsure(const Map& map, size_t bin);
 
-struct MapPicture {
-  Picture picture;
-  // Pixels that show the grid, with sharp adjacent cells; row 0 of the grid's pixels is at y_high.
-  int grid_left = 0;
-  int grid_top = 0;
-  int grid_width = 0;
-  int grid_height = 0;
-};
-
 // Uses the colours of colour_scale(map), and hatching for missing values. Equal scales on x and y
-// are kept up to a side ratio of 8. Throws InputError for inconsistent sizes.
-MapPicture map_picture(const Map& map, const Provenance& provenance,
-                       PictureStyle style = PictureStyle::page);
-// The map as a vector page; its cells are an image.
-std::string svg_of(const Map& map, const Provenance& provenance, PictureStyle style);
-std::string pdf_of(const Map& map, const Provenance& provenance, const PdfText& text,
-                   PictureStyle style);
+// are kept up to a side ratio of 8. The cells are an image; its row 0 is at y_high. Throws
+// InputError for inconsistent sizes.
+DrawnPage page_of(const Map& map, const Provenance& provenance,
+                  PictureStyle style = PictureStyle::page);
 
 // A number on a contour line of a smooth map: its centre in pixels from the top left corner of
 // `columns` × `rows`, turned along the line, upright.

@@ -1,5 +1,7 @@
 #include "images/drawing/map.h"
 
+#include <optional>
+
 #include "images/drawing/axis.h"
 
 namespace photorque {
@@ -129,36 +131,55 @@ Map beyond_rim(Map map) {
   return map;
 }
 
-// Fraction of a pixel within the rim of a round map, 0 to 1; 1 for other maps.
-double part_within_rim(bool round, int column, int row, int columns, int rows) {
-  if (!round) return 1.0;
-  const double x = (2.0 * (column + 0.5) / columns - 1.0), y = 2.0 * (row + 0.5) / rows - 1.0;
-  return std::clamp(0.5 * std::min(columns, rows) * (1.0 - std::hypot(x, y)) + 0.5, 0.0, 1.0);
-}
-
 Ticks contour_levels(const ColourScale& scale) {
   constexpr int most_levels = 17;
   return linear_ticks(scale.low, scale.high, most_levels);
 }
 
-// A smooth field with thin contour lines at equal steps; a pixel is darker the nearer it is to a
-// line.
-class SmoothField {
+// Value of a map at a pixel of a picture of it.
+double pixel_value(const Map& of, int column, int row, int columns, int rows) {
+  if (!of.smooth) {
+    return mean_of(of, cells_under(column, columns, of.width),
+                   cells_under(rows - 1 - row, rows, of.height));
+  }
+  return smooth_value(of, (column + 0.5) * (of.width - 1) / columns,
+                      (rows - row - 0.5) * (of.height - 1) / rows);
+}
+
+// Paler than the colours of a signed scale, darker than its middle.
+constexpr Rgb unsure_grey = {0.74, 0.74, 0.74};
+
+// The values of a map at the pixels of a picture. A smooth map has thin contour lines at equal
+// steps; a pixel is darker the nearer it is to a line.
+class PixelField {
  public:
-  SmoothField(const Map& stored, const ColourScale& scale, int columns, int rows)
-      : scale_(scale), columns_(columns), rows_(rows) {
-    const bool round = is_round(stored);
-    const Map map = round ? beyond_rim(stored) : stored;
+  PixelField(const Map& stored, const ColourScale& scale, int columns, int rows)
+      : scale_(scale), columns_(columns), rows_(rows), is_round_(is_round(stored)) {
+    const Map map = is_round_ ? beyond_rim(stored) : stored;
+    if (stored.signed_values && !stored.standard_error.empty()) {
+      errors_ = map;
+      errors_->value = map.standard_error;
+    }
     const Ticks ticks = contour_levels(scale);
-    if (ticks.values.size() > 1) step_ = ticks.values[1] - ticks.values[0];
+    if (map.smooth && ticks.values.size() > 1) step_ = ticks.values[1] - ticks.values[0];
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column) {
-        value_.push_back(part_within_rim(round, column, row, columns, rows) > 0.0
-                             ? smooth_value(map, (column + 0.5) * (map.width - 1) / columns,
-                                            (rows - row - 0.5) * (map.height - 1) / rows)
+        value_.push_back(part_within_rim(column, row) > 0.0
+                             ? pixel_value(map, column, row, columns, rows)
                              : std::numeric_limits<double>::quiet_NaN());
       }
     }
+  }
+
+  double value(int column, int row) const {
+    return value_[static_cast<size_t>(row) * columns_ + column];
+  }
+
+  // Whether the value is within two standard errors of zero.
+  bool is_unsure(int column, int row) const {
+    if (!errors_) return false;
+    const double error = pixel_value(*errors_, column, row, columns_, rows_);
+    return error > 0.0 && std::abs(value(column, row)) < 2.0 * error;
   }
 
   uint32_t pixel(int column, int row) const {
@@ -174,75 +195,26 @@ class SmoothField {
       const double ink = darkest * std::clamp(half_width + 0.5 - away, 0.0, 1.0);
       for (double* channel : {&colour.red, &colour.green, &colour.blue}) *channel *= 1.0 - ink;
     }
-    return opaque_argb(rgb_bytes(colour));
-  }
-
-  double value(int column, int row) const {
-    return value_[static_cast<size_t>(row) * columns_ + column];
+    if (is_unsure(column, row)) colour = unsure_grey;
+    const auto opacity = static_cast<uint32_t>(std::lround(255.0 * part_within_rim(column, row)));
+    return (opaque_argb(rgb_bytes(colour)) & 0x00FFFFFFu) | opacity << 24;
   }
 
  private:
+  // Fraction of a pixel within the rim of a round map, 0 to 1; 1 for other maps.
+  double part_within_rim(int column, int row) const {
+    if (!is_round_) return 1.0;
+    const double x = 2.0 * (column + 0.5) / columns_ - 1.0, y = 2.0 * (row + 0.5) / rows_ - 1.0;
+    return std::clamp(0.5 * std::min(columns_, rows_) * (1.0 - std::hypot(x, y)) + 0.5, 0.0, 1.0);
+  }
+
   const ColourScale& scale_;
   int columns_, rows_;
+  bool is_round_;
   double step_ = 0.0;  // between contour lines
   std::vector<double> value_;
+  std::optional<Map> errors_ = {};  // the standard errors of signed values
 };
-
-std::vector<uint32_t> smooth_pixels(const Map& map, const ColourScale& scale, int columns,
-                                    int rows) {
-  const SmoothField field(map, scale, columns, rows);
-  std::vector<uint32_t> pixels;
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) pixels.push_back(field.pixel(column, row));
-  }
-  return pixels;
-}
-
-// Paler than the colours of a signed scale, darker than its middle.
-constexpr Rgb unsure_grey = {0.74, 0.74, 0.74};
-
-std::vector<uint32_t> plain_pixels(const Map& map, const ColourScale& scale, int columns,
-                                   int rows) {
-  std::vector<uint32_t> pixels(static_cast<size_t>(columns) * rows, 0u);
-  for (int row = 0; row < rows; ++row) {
-    const Cells map_rows = cells_under(rows - 1 - row, rows, map.height);
-    for (int column = 0; column < columns; ++column) {
-      const double value = mean_of(map, cells_under(column, columns, map.width), map_rows);
-      if (!std::isnan(value))
-        pixels[static_cast<size_t>(row) * columns + column] = opaque_argb(rgb_bytes(scale(value)));
-    }
-  }
-  return pixels;
-}
-
-// Area in which a value is within two standard errors of zero.
-class UnsureArea {
- public:
-  explicit UnsureArea(const Map& map) : map_(is_round(map) ? beyond_rim(map) : map), errors_(map_) {
-    errors_.value = map_.standard_error;
-  }
-  bool at(int column, int row, int columns, int rows) const {
-    const double error = value(errors_, column, row, columns, rows);
-    return error > 0.0 && std::abs(value(map_, column, row, columns, rows)) < 2.0 * error;
-  }
-
- private:
-  static double value(const Map& of, int column, int row, int columns, int rows) {
-    if (!of.smooth) {
-      return mean_of(of, cells_under(column, columns, of.width),
-                     cells_under(rows - 1 - row, rows, of.height));
-    }
-    return smooth_value(of, (column + 0.5) * (of.width - 1) / columns,
-                        (rows - row - 0.5) * (of.height - 1) / rows);
-  }
-
-  Map map_, errors_;
-};
-
-std::optional<UnsureArea> unsure_area(const Map& map) {
-  if (!map.signed_values || map.standard_error.empty()) return std::nullopt;
-  return UnsureArea(map);
-}
 
 }  // namespace
 
@@ -251,8 +223,7 @@ std::vector<ContourLabel> contour_labels(const Map& map, const ColourScale& scal
   std::vector<ContourLabel> labels;
   const Ticks levels = contour_levels(scale);
   if (!map.smooth || levels.values.size() < 3) return labels;
-  const SmoothField field(map, scale, columns, rows);
-  const std::optional<UnsureArea> unsure = unsure_area(map);
+  const PixelField field(map, scale, columns, rows);
   const auto edge = static_cast<int>(0.6 * room);
   // Whether a whole label has values around it.
   const auto is_inside = [&](int column, int row) {
@@ -290,7 +261,7 @@ std::vector<ContourLabel> contour_labels(const Map& map, const ColourScale& scal
         const double slope = std::hypot(right, down);
         if (!(std::abs(here - level) < 1.5 * slope) || slope >= least_slope) continue;
         if (distance_to_others(column, row) < 2.0 * room) continue;
-        if (unsure && unsure->at(column, row, columns, rows)) continue;
+        if (field.is_unsure(column, row)) continue;
         least_slope = slope;
         // Angle along the line with upright letters.
         double turn = std::atan2(right, down);
@@ -312,20 +283,10 @@ bool is_unsure(const Map& map, size_t bin) {
 }
 
 std::vector<uint32_t> map_pixels(const Map& map, const ColourScale& scale, int columns, int rows) {
-  std::vector<uint32_t> pixels = map.smooth ? smooth_pixels(map, scale, columns, rows)
-                                            : plain_pixels(map, scale, columns, rows);
-  const std::optional<UnsureArea> unsure = unsure_area(map);
-  const bool round = is_round(map);
-  if (!unsure && !round) return pixels;
+  const PixelField field(map, scale, columns, rows);
+  std::vector<uint32_t> pixels;
   for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      uint32_t& pixel = pixels[static_cast<size_t>(row) * columns + column];
-      if (pixel == 0u) continue;
-      if (unsure && unsure->at(column, row, columns, rows))
-        pixel = opaque_argb(rgb_bytes(unsure_grey));
-      const double part = part_within_rim(round, column, row, columns, rows);
-      pixel = (pixel & 0x00FFFFFFu) | static_cast<uint32_t>(std::lround(255.0 * part)) << 24;
-    }
+    for (int column = 0; column < columns; ++column) pixels.push_back(field.pixel(column, row));
   }
   return pixels;
 }

@@ -2,7 +2,6 @@
 
 #include "core/errors.h"
 #include "core/text/format.h"
-#include "images/drawing/page_layout.h"
 #include "images/drawing/plot.h"
 
 namespace photorque {
@@ -15,7 +14,8 @@ constexpr double shortest_colour_bar = 150.0;
 constexpr double narrowest_page = 400.0;
 
 struct MapLayout {
-  PageBox grid;  // in whole points, so that cells match pixels exactly
+  bool is_page = true;  // otherwise a chart in HTML, without text and numbers on the grid
+  PageBox grid;         // in whole points on a page, so that cells match pixels exactly
   Axis x, y;
   ColourBar bar;
   double bar_height = 0.0;
@@ -150,10 +150,6 @@ void require_consistent(const Map& map) {
 
 namespace {
 
-double page_height(const MapLayout& layout) {
-  return std::ceil(layout.text.page_height(layout.body_height));
-}
-
 // Draws numbers on contour lines, on a background of the line's colour.
 void draw_contour_labels(Canvas& canvas, const Map& map, const MapLayout& layout, int columns,
                          int rows) {
@@ -179,97 +175,66 @@ void draw_contour_labels(Canvas& canvas, const Map& map, const MapLayout& layout
   }
 }
 
-// Draws the grid as an image of `columns` × `rows` pixels, with axes and colour bar.
-void draw_map(Canvas& canvas, const Map& map, const MapLayout& layout, int columns, int rows) {
+// Draws the grid as an image, with axes and colour bar.
+void draw_map(Canvas& canvas, const Map& map, const MapLayout& layout, double per_point) {
+  const auto columns = static_cast<int>(std::lround(per_point * layout.grid.width));
+  const auto rows = static_cast<int>(std::lround(per_point * layout.grid.height));
   if (!map.smooth) draw_hatching(canvas, layout.grid);
   canvas.image(layout.grid, columns, rows, map_pixels(map, layout.bar.scale, columns, rows));
-  if (map.smooth) draw_contour_labels(canvas, map, layout, columns, rows);
-  if (are_cells(map)) draw_cell_numbers(canvas, map, layout.bar.scale, layout.grid);
-  // The outline is around the cells, not on them.
-  canvas.outline(
-      {layout.grid.x - 0.4, layout.grid.y - 0.4, layout.grid.width + 0.8, layout.grid.height + 0.8},
-      {ink, 0.8});
+  if (layout.is_page) {
+    if (map.smooth) draw_contour_labels(canvas, map, layout, columns, rows);
+    if (are_cells(map)) draw_cell_numbers(canvas, map, layout.bar.scale, layout.grid);
+  }
+  // On a page the outline is around the cells, not on them.
+  const double apart = layout.is_page ? 0.4 : 0.0;
+  canvas.outline({layout.grid.x - apart, layout.grid.y - apart, layout.grid.width + 2.0 * apart,
+                  layout.grid.height + 2.0 * apart},
+                 {ink, 0.8});
   draw_horizontal_axis(canvas, layout.grid, layout.x);
   draw_vertical_axis(canvas, layout.grid, layout.y, vertical_axis_width(layout.y));
   draw_colour_bar(canvas, layout.bar, {layout.bar_x, layout.bar_y}, layout.bar_height);
   draw_page_text(canvas, layout.text, layout.body_height);
 }
 
-// The map as a vector page.
-std::string map_file(Canvas canvas, const Map& map, const MapLayout& layout) {
-  constexpr double per_point = 3.0;
-  draw_map(canvas, map, layout, static_cast<int>(per_point * layout.grid.width),
-           static_cast<int>(per_point * layout.grid.height));
-  return canvas.finish_file();
-}
-
 }  // namespace
 
-MapPicture map_picture(const Map& map, const Provenance& provenance, PictureStyle style) {
+DrawnPage page_of(const Map& map, const Provenance& provenance, PictureStyle style) {
   require_consistent(map);
   const MapLayout layout = map_layout(map, provenance, style);
-  Canvas canvas = Canvas::of_pixels(layout.width, page_height(layout), pixels_per_point(style));
-  const auto pixels = [style](double points) {
-    return static_cast<int>(std::lround(points * pixels_per_point(style)));
-  };
-  MapPicture result{{},
-                    pixels(layout.grid.x),
-                    pixels(layout.grid.y),
-                    pixels(layout.grid.width),
-                    pixels(layout.grid.height)};
-  draw_map(canvas, map, layout, result.grid_width, result.grid_height);
-  result.picture = canvas.finish_pixels();
-  return result;
-}
-
-std::string svg_of(const Map& map, const Provenance& provenance, PictureStyle style) {
-  require_consistent(map);
-  const MapLayout layout = map_layout(map, provenance, style);
-  return map_file(Canvas::of_svg(layout.width, page_height(layout), Canvas::Letters::text), map,
-                  layout);
-}
-
-std::string pdf_of(const Map& map, const Provenance& provenance, const PdfText& text,
-                   PictureStyle style) {
-  require_consistent(map);
-  const MapLayout layout = map_layout(map, provenance, style);
-  return map_file(Canvas::of_pdf(layout.width, page_height(layout), text), map, layout);
+  return {layout.width, std::ceil(layout.text.page_height(layout.body_height)), style, layout.grid,
+          [map, layout](Canvas& canvas, double per_point) {
+            draw_map(canvas, map, layout, per_point);
+          }};
 }
 
 std::string map_html(const Map& map) {
   require_consistent(map);
   constexpr double width = 0.5 * html_chart_width, top = 14.0, gap = 14.0;
   const ColourScale scale = colour_scale(map);
-  PageBox grid = grid_size(map);
+  MapLayout layout;
+  layout.is_page = false;
+  layout.grid = grid_size(map);
+  PageBox& grid = layout.grid;
   // The bar's width does not depend on its height.
   const double bar_width = colour_bar(scale, map.unit, grid.height).width();
-  Axis x, y;
   // The width of the tick labels depends on the ticks and vice versa: two iterations suffice.
   for (int round = 0; round < 2; ++round) {
-    x = horizontal_axis({map.x_low, map.x_high}, false, map.x_label, grid.width);
-    y = vertical_axis({map.y_low, map.y_high}, false, map.y_label, grid.height);
-    const double room = width - vertical_axis_width(y) - gap - bar_width - 4.0;
+    layout.x = horizontal_axis({map.x_low, map.x_high}, false, map.x_label, grid.width);
+    layout.y = vertical_axis({map.y_low, map.y_high}, false, map.y_label, grid.height);
+    const double room = width - vertical_axis_width(layout.y) - gap - bar_width - 4.0;
     const double ratio = grid.width / grid.height;
     grid.width = std::min(room, 340.0 * ratio);
     grid.height = grid.width / ratio;
   }
-  grid.x = 2.0 + vertical_axis_width(y);
-  grid.y = top + colour_bar_unit_height;
-  const double bar_height = std::max(grid.height, 90.0);
-  const ColourBar bar = colour_bar(scale, map.unit, bar_height);
+  grid.x = 2.0 + vertical_axis_width(layout.y);
+  grid.y = layout.bar_y = top + colour_bar_unit_height;
+  layout.bar_x = grid.right() + gap;
+  layout.bar_height = std::max(grid.height, 90.0);
+  layout.bar = colour_bar(scale, map.unit, layout.bar_height);
   const double bottom =
-      std::max(grid.bottom() + horizontal_axis_height(x), grid.y + bar_height + 8.0);
+      std::max(grid.bottom() + horizontal_axis_height(layout.x), grid.y + layout.bar_height + 8.0);
   Canvas canvas = Canvas::of_svg(width, std::ceil(bottom + 4.0));
-  if (!map.smooth) draw_hatching(canvas, grid);
-  const int columns =
-                static_cast<int>(std::lround(pixels_per_point(PictureStyle::page) * grid.width)),
-            rows =
-                static_cast<int>(std::lround(pixels_per_point(PictureStyle::page) * grid.height));
-  canvas.image(grid, columns, rows, map_pixels(map, scale, columns, rows));
-  canvas.outline(grid, {ink, 0.8});
-  draw_horizontal_axis(canvas, grid, x);
-  draw_vertical_axis(canvas, grid, y, vertical_axis_width(y));
-  draw_colour_bar(canvas, bar, {grid.right() + gap, grid.y}, bar_height);
+  draw_map(canvas, map, layout, pixels_per_point(PictureStyle::page));
   return canvas.finish_html(map.title);
 }
 

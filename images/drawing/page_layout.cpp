@@ -1,6 +1,7 @@
 #include "images/drawing/page_layout.h"
 
 #include "core/text/format.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {
@@ -8,19 +9,6 @@ namespace {
 constexpr double colour_bar_thickness = 16.0;
 constexpr double caption_gap = 10.0;
 constexpr Rgb alarm = {0.78, 0.1, 0.05};
-
-std::vector<std::string> words_of(const std::string& text) {
-  std::vector<std::string> words(1);
-  for (const char c : text) {
-    if (c == ' ') {
-      words.emplace_back();
-    } else {
-      words.back() += c;
-    }
-  }
-  std::erase(words, "");
-  return words;
-}
 
 // Longest beginning of `text`, at least one character, that is at most `width` wide.
 std::string longest_fitting_prefix(const std::string& text, double width, const TextStyle& style) {
@@ -39,7 +27,8 @@ std::vector<std::string> broken_lines(const std::string& text, double width,
                                       const TextStyle& style) {
   std::vector<std::string> lines;
   std::string line;
-  for (std::string word : words_of(text)) {
+  for (const std::string_view next : words_of(text)) {
+    std::string word(next);
     const std::string longer = line.empty() ? word : line + " " + word;
     if (text_width(longer, style) <= width) {
       line = longer;
@@ -120,6 +109,28 @@ void draw_page_text(Canvas& canvas, const PageText& text, double body_height) {
   draw_text(canvas, text.title, {page_margin, page_margin});
   draw_text(canvas, text.warnings, {page_margin, page_margin + text.title.height() + 2.0});
   draw_text(canvas, text.caption, {page_margin, text.body_top() + body_height + caption_gap});
+}
+
+Picture DrawnPage::pixels() const {
+  const double per_point = pixels_per_point(style);
+  Canvas canvas = Canvas::of_pixels(width, height, per_point);
+  draw(canvas, per_point);
+  return canvas.finish_pixels();
+}
+
+// Pixels per point of the images of a vector page.
+constexpr double vector_pixels = 3.0;
+
+std::string DrawnPage::svg() const {
+  Canvas canvas = Canvas::of_svg(width, height, Canvas::Letters::text);
+  draw(canvas, vector_pixels);
+  return canvas.finish_file();
+}
+
+std::string DrawnPage::pdf(const PdfText& text) const {
+  Canvas canvas = Canvas::of_pdf(width, height, text);
+  draw(canvas, vector_pixels);
+  return canvas.finish_file();
 }
 
 double ColourBar::width() const {

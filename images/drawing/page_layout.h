@@ -1,6 +1,7 @@
 // Layout around a picture: title, warnings, caption, colour bar.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,19 @@ PageText page_text(const std::string& title, const std::string& caption,
                    const Provenance& provenance, double page_width,
                    PictureStyle style = PictureStyle::page);
 void draw_page_text(Canvas& canvas, const PageText& text, double body_height);
+
+// A page that can be drawn on every kind of canvas.
+struct DrawnPage {
+  double width = 0.0, height = 0.0;
+  PictureStyle style = PictureStyle::page;
+  PageBox grid = {};  // bins of a map, in whole points; empty for a plot
+  // Draws the page; images have `per_point` pixels per point.
+  std::function<void(Canvas&, double per_point)> draw;
+
+  Picture pixels() const;
+  std::string svg() const;
+  std::string pdf(const PdfText& text) const;
+};
 
 // A vertical colour bar with numbers on its right and the unit above it.
 struct ColourBar {

@@ -1,9 +1,7 @@
 #include "images/drawing/plot.h"
 
-#include <sstream>
-
 #include "core/errors.h"
-#include "images/drawing/page_layout.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {
@@ -99,8 +97,9 @@ std::optional<TextStyle> style_of_words(const std::vector<Plot::Curve>& curves, 
                                         TextStyle style) {
   double widest = 0.0;
   for (const Plot::Curve& curve : curves) {
-    std::istringstream words(curve.label);
-    for (std::string word; words >> word;) widest = std::max(widest, text_width(word, style));
+    for (const std::string_view word : words_of(curve.label)) {
+      widest = std::max(widest, text_width(std::string(word), style));
+    }
   }
   constexpr double rounding = 0.99;
   if (widest > rounding * room) style.size *= rounding * room / widest;
@@ -172,6 +171,13 @@ void place_frames(PlotLayout& layout, const PlotRoom& room, const Axis& x_axis,
                   std::max(horizontal_axis_height(x_axis), names_height(layout.panels.back()));
 }
 
+// Draws a horizontal line through the frame at a value of y.
+void draw_level(Canvas& canvas, const ChartPanel& panel, double value, const Stroke& stroke) {
+  const double y = panel.frame.bottom() - panel.frame.height * panel.y.fraction(value);
+  if (std::isfinite(y)) canvas.line({panel.frame.x, y}, {panel.frame.right(), y}, stroke);
+}
+
+// Draws the grid and the zero line of a signed quantity, which the light grid does not emphasise.
 void draw_grid(Canvas& canvas, const ChartPanel& panel) {
   const PageBox& frame = panel.frame;
   for (const double value : panel.x.ticks.values) {
@@ -179,16 +185,10 @@ void draw_grid(Canvas& canvas, const ChartPanel& panel) {
     canvas.line({x, frame.y}, {x, frame.bottom()}, {grid_grey, 0.7});
   }
   for (const double value : panel.y.ticks.values) {
-    const double y = frame.bottom() - frame.height * panel.y.fraction(value);
-    canvas.line({frame.x, y}, {frame.right(), y}, {grid_grey, 0.7});
+    draw_level(canvas, panel, value, {grid_grey, 0.7});
   }
-}
-
-// Draws the zero line of a signed quantity, which the light grid does not emphasise.
-void draw_zero_line(Canvas& canvas, const ChartPanel& panel) {
-  if (panel.y.log || panel.y.range.low >= 0.0 || panel.y.range.high <= 0.0) return;
-  const double y = panel.frame.bottom() - panel.frame.height * panel.y.fraction(0.0);
-  canvas.line({panel.frame.x, y}, {panel.frame.right(), y}, {{0.6, 0.6, 0.6}, 0.9});
+  const bool has_zero_inside = !panel.y.log && panel.y.range.low < 0.0 && panel.y.range.high > 0.0;
+  if (has_zero_inside) draw_level(canvas, panel, 0.0, {{0.6, 0.6, 0.6}, 0.9});
 }
 
 // Draws shaded intervals. The label is at the top, or at the bottom if the legend covers the top.
@@ -216,14 +216,6 @@ void draw_shaded(Canvas& canvas, const ChartPanel& panel, const Plot& plot, bool
   }
 }
 
-void draw_levels(Canvas& canvas, const ChartPanel& panel, const std::vector<double>& levels) {
-  for (const double level : levels) {
-    const double y = panel.frame.bottom() - panel.frame.height * panel.y.fraction(level);
-    if (!std::isfinite(y)) continue;
-    canvas.line({panel.frame.x, y}, {panel.frame.right(), y}, {ink, 0.9, 1.0, {2.0, 4.0}});
-  }
-}
-
 constexpr double page_width = 640.0;
 
 std::string caption_of(const Plot& plot) {
@@ -232,34 +224,6 @@ std::string caption_of(const Plot& plot) {
                                [](const Plot::Curve& curve) { return !curve.y_error.empty(); });
   });
   return any ? "Bars and bands: ±1 standard error." : "";
-}
-
-// A plot with title and caption around it.
-struct PlotPage {
-  Plot plot;
-  double width = 0.0;
-  PageText text;
-  PlotLayout layout;
-  double body_height() const { return layout.bottom - text.body_top(); }
-  double height() const { return std::ceil(text.page_height(body_height())); }
-};
-
-PlotPage page_of(const Plot& plot, const Provenance& provenance, PictureStyle style) {
-  require_consistent(plot);
-  PlotPage page;
-  page.plot = with_readable_time_unit(plot);
-  page.width = std::round(page_width * page_scale(style));
-  page.text = page_text(plot.title, caption_of(plot), provenance, page.width, style);
-  page.layout = plot_layout(page.plot, {.left = page_margin,
-                                        .right = page.width - page_margin,
-                                        .top = std::ceil(page.text.body_top()),
-                                        .scale = page_scale(style)});
-  return page;
-}
-
-void draw_page(Canvas& canvas, const PlotPage& page) {
-  draw_plot(canvas, page.plot, page.layout);
-  draw_page_text(canvas, page.text, page.body_height());
 }
 
 }  // namespace
@@ -337,9 +301,10 @@ void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout) {
     const PagePoint corner = layout.below.value_or(free_corner(panel, legend).value_or(outside));
     draw_shaded(canvas, panel, plot, i == 0, {corner.x, corner.y, legend.width, legend.height});
     draw_grid(canvas, panel);
-    draw_zero_line(canvas, panel);
     draw_curves(canvas, panel);
-    draw_levels(canvas, panel, panels[i].levels);
+    for (const double level : panels[i].levels) {
+      draw_level(canvas, panel, level, {ink, 0.9, 1.0, {2.0, 4.0}});
+    }
     canvas.outline(panel.frame, {ink, 0.8});
     draw_vertical_axis(canvas, panel.frame, panel.y, layout.axis_width);
     if (i + 1 == layout.panels.size()) draw_horizontal_axis(canvas, panel.frame, panel.x);
@@ -391,26 +356,24 @@ double seconds_of_unit(const Plot& plot) {
   return 1.0;
 }
 
-Picture plot_picture(const Plot& plot, const Provenance& provenance, PictureStyle style) {
-  const PlotPage page = page_of(plot, provenance, style);
-  Canvas canvas = Canvas::of_pixels(page.width, page.height(), pixels_per_point(style));
-  draw_page(canvas, page);
-  return canvas.finish_pixels();
-}
-
-std::string svg_of(const Plot& plot, const Provenance& provenance, PictureStyle style) {
-  const PlotPage page = page_of(plot, provenance, style);
-  Canvas canvas = Canvas::of_svg(page.width, page.height(), Canvas::Letters::text);
-  draw_page(canvas, page);
-  return canvas.finish_file();
-}
-
-std::string pdf_of(const Plot& plot, const Provenance& provenance, const PdfText& text,
-                   PictureStyle style) {
-  const PlotPage page = page_of(plot, provenance, style);
-  Canvas canvas = Canvas::of_pdf(page.width, page.height(), text);
-  draw_page(canvas, page);
-  return canvas.finish_file();
+DrawnPage page_of(const Plot& of, const Provenance& provenance, PictureStyle style) {
+  require_consistent(of);
+  const Plot plot = with_readable_time_unit(of);
+  const double width = std::round(page_width * page_scale(style));
+  const PageText text = page_text(plot.title, caption_of(plot), provenance, width, style);
+  const PlotLayout layout = plot_layout(plot, {.left = page_margin,
+                                               .right = width - page_margin,
+                                               .top = std::ceil(text.body_top()),
+                                               .scale = page_scale(style)});
+  const double body_height = layout.bottom - text.body_top();
+  return {width,
+          std::ceil(text.page_height(body_height)),
+          style,
+          {},
+          [plot, layout, text, body_height](Canvas& canvas, double) {
+            draw_plot(canvas, plot, layout);
+            draw_page_text(canvas, text, body_height);
+          }};
 }
 
 std::string plot_html(const Plot& of) {

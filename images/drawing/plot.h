@@ -6,9 +6,8 @@
 
 #include "core/product.h"
 #include "core/provenance.h"
-#include "images/drawing/canvas.h"
 #include "images/drawing/curves.h"
-#include "images/drawing/style.h"
+#include "images/drawing/page_layout.h"
 
 namespace photorque {
 
@@ -52,12 +51,8 @@ double seconds_of_unit(const Plot& plot);
 // are drawn as ±1 standard error: bars on markers, bands around lines. The legend is in a free
 // corner, or outside if there is none. Values that are not finite, or not positive on a logarithmic
 // axis, leave gaps. Throws InputError for inconsistent sizes.
-Picture plot_picture(const Plot& plot, const Provenance& provenance,
-                     PictureStyle style = PictureStyle::page);
-std::string svg_of(const Plot& plot, const Provenance& provenance,
-                   PictureStyle style = PictureStyle::page);
-std::string pdf_of(const Plot& plot, const Provenance& provenance, const PdfText& text,
-                   PictureStyle style = PictureStyle::page);
+DrawnPage page_of(const Plot& plot, const Provenance& provenance,
+                  PictureStyle style = PictureStyle::page);
 
 // Width of charts in HTML pages, in units of the chart: full width on the page scales them.
 inline constexpr double html_chart_width = 920.0;

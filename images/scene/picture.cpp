@@ -33,18 +33,6 @@ void require_consistent(const SceneView& view) {
   }
 }
 
-// Largest irradiance in view; empty if no receiver is in view.
-std::optional<double> largest_irradiance_W_m2(const SceneView& view) {
-  std::optional<double> largest;
-  for (size_t i = 0; i < view.irradiance_W_m2.size(); ++i) {
-    const double value = view.irradiance_W_m2[i];
-    if (std::isfinite(view.depth_m[i]) && std::isfinite(value)) {
-      largest = std::max(largest.value_or(value), value);
-    }
-  }
-  return largest;
-}
-
 // Axes that point away from the viewer are drawn first, so that nearer axes cover them.
 void draw_triad(Canvas& canvas, const PagePoint& origin, const std::array<Vec3, 3>& axes_camera) {
   const std::array<Rgb, 3> colours = {rgb_from_hex(0xD55E00), rgb_from_hex(0x009E73),
@@ -84,14 +72,17 @@ std::vector<uint32_t> as_argb(const Picture& picture) {
 Picture scene_picture(const SceneView& view, const SceneLabels& labels,
                       const Provenance& provenance) {
   require_consistent(view);
-  const std::optional<double> largest = largest_irradiance_W_m2(view);
-  ColourScale scale =
-      colour_scale(0.0, labels.scale_end_W_m2.value_or(largest.value_or(0.0)), false);
+  Extent irradiance_W_m2;
+  for (size_t i = 0; i < view.irradiance_W_m2.size(); ++i) {
+    if (std::isfinite(view.depth_m[i])) irradiance_W_m2.include(view.irradiance_W_m2[i]);
+  }
+  const bool shows_receiver = irradiance_W_m2.low <= irradiance_W_m2.high;
+  const ColourScale scale = colour_scale({0.0, shows_receiver ? irradiance_W_m2.high : 0.0}, false);
   const double per_point = pixels_per_point(PictureStyle::page);
   PageBox image{page_margin, 0.0, view.width / per_point, view.height / per_point};
   const double bar_height = std::max(80.0, std::min(300.0, image.height - 60.0));
-  const ColourBar bar = colour_bar(scale, labels.unit, bar_height);
-  const double bar_room = largest ? 18.0 + bar.width() : 0.0;
+  const ColourBar bar = colour_bar(scale, "W/m²", bar_height);
+  const double bar_room = shows_receiver ? 18.0 + bar.width() : 0.0;
   const double page_width =
       std::ceil(std::max(narrowest_scene_page, image.right() + bar_room + page_margin));
   const PageText text = page_text(labels.title, labels.caption, provenance, page_width);
@@ -101,7 +92,7 @@ Picture scene_picture(const SceneView& view, const SceneLabels& labels,
   Canvas canvas =
       Canvas::of_pixels(page_width, std::ceil(text.page_height(body_height)), per_point);
   canvas.image(image, view.width, view.height, as_argb(shaded(view, scale)));
-  if (largest) {
+  if (shows_receiver) {
     const double slack = std::max(0.0, image.height - bar_height - colour_bar_unit_height);
     const double bar_y = std::round(image.y + 0.5 * slack + colour_bar_unit_height);
     draw_colour_bar(canvas, bar, {image.right() + 18.0, bar_y}, bar_height);

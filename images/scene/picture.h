@@ -85,16 +85,14 @@ void draw_rays(SceneView& view, const Pinhole& camera, const std::vector<float>&
 struct SceneLabels {
   std::string title;
   std::string caption = {};
-  std::string unit = "W/m²";
-  // Irradiance at the end of the colour scale, which starts at zero; empty: the largest in view.
-  std::optional<double> scale_end_W_m2 = {};
   // Unit vectors of the body's x, y and z in camera axes (x right, y up, z towards the viewer);
   // drawn as a small triad in the lower left corner.
   std::optional<std::array<Vec3, 3>> body_axes_camera = {};
 };
 
-// The view at its own resolution with title, colour bar (if a receiver is in view), caption and
-// provenance. Throws InputError if the sizes of the arrays disagree.
+// The view at its own resolution with title, colour bar of the irradiance from zero to the largest
+// in view (if a receiver is in view), caption and provenance. Throws InputError if the sizes of the
+// arrays disagree.
 Picture scene_picture(const SceneView& view, const SceneLabels& labels,
                       const Provenance& provenance);
 

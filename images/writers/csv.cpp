@@ -102,12 +102,11 @@ std::string csv_of(const Table& table, const Provenance& provenance) {
 
 WriterKind kind() {
   return {"csv", "Maps and tables as comma-separated values behind lines of provenance",
-          [](const Product& product, const Provenance& provenance,
-             const std::filesystem::path& folder, PictureStyle) {
+          [](const WriterJob& job) {
             const auto put = [&](const auto& item, const std::filesystem::path& path) {
-              write_file_whole(path, csv_of(item, provenance));
+              write_file_whole(path, csv_of(item, job.provenance));
             };
-            return write_each(folder, "csv", put, product.maps, product.tables);
+            return job.each("csv", put, job.product.maps, job.product.tables);
           }};
 }
 

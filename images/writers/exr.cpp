@@ -10,13 +10,12 @@ namespace photorque::kinds::exr {
 
 WriterKind kind() {
   return {"exr", "Maps as OpenEXR images of 32-bit floats with their standard errors",
-          [](const Product& product, const Provenance& provenance,
-             const std::filesystem::path& folder, PictureStyle) {
+          [](const WriterJob& job) {
             const auto put = [&](const Map& map, const std::filesystem::path& path) {
               write_exr(path, map.width, map.height, map_channels(map),
-                        map_metadata(map, provenance));
+                        map_metadata(map, job.provenance));
             };
-            return write_each(folder, "exr", put, product.maps);
+            return job.each("exr", put, job.product.maps);
           }};
 }
 

@@ -80,22 +80,21 @@ void add_plot(Hdf5File& file, const Plot& plot) {
   file.attribute(place, "x_label", plot.x_label);
 }
 
-std::vector<std::filesystem::path> write_run(const Product& product, const Provenance& provenance,
-                                             const std::filesystem::path& folder, PictureStyle) {
-  if (product.quantities.empty() && product.maps.empty() && product.tables.empty() &&
-      product.plots.empty()) {
+std::vector<std::filesystem::path> write_run(const WriterJob& job) {
+  if (job.product.quantities.empty() && job.product.maps.empty() && job.product.tables.empty() &&
+      job.product.plots.empty()) {
     return {};
   }
   Hdf5File file;
-  for (const Quantity& figure : product.quantities) {
+  for (const Quantity& figure : job.product.quantities) {
     file.numbers(place_for(file, "/figures", figure.name),
                  {figure.estimate.value, figure.estimate.standard_error}, {2});
   }
-  for (const Map& map : product.maps) add_map(file, map);
-  for (const Table& table : product.tables) add_table(file, table);
-  for (const Plot& plot : product.plots) add_plot(file, plot);
-  file.stamp("/", provenance);
-  const std::filesystem::path path = file_in(folder, "run", "h5");
+  for (const Map& map : job.product.maps) add_map(file, map);
+  for (const Table& table : job.product.tables) add_table(file, table);
+  for (const Plot& plot : job.product.plots) add_plot(file, plot);
+  file.stamp("/", job.provenance);
+  const std::filesystem::path path = file_in(job.folder, "run", "h5");
   file.write(path);
   return {path};
 }

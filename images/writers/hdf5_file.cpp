@@ -176,18 +176,12 @@ void Hdf5File::stamp(const std::string& place, const Provenance& provenance) {
   attribute(place, "program", provenance.program + " " + provenance.version);
   attribute(place, "git_hash", provenance.git_hash);
   attribute(place, "seed", std::to_string(provenance.seed));
-  const auto all = [this, &place](const std::string& name, const std::vector<std::string>& lines) {
-    for (size_t i = 0; i < lines.size(); ++i) {
-      attribute(place, name + "_" + std::to_string(i + 1), lines[i]);
-    }
-  };
-  std::vector<std::string> inputs;
-  for (const auto& [file, hash] : provenance.inputs) {
-    inputs.push_back(file);
-    inputs.back().append(" ").append(hash);
+  for (size_t i = 1; const auto& [file, hash] : provenance.inputs) {
+    attribute(place, "input_" + std::to_string(i++), file + " " + hash);
   }
-  all("input", inputs);
-  all("warning", provenance.warnings);
+  for (size_t i = 1; const std::string& warning : provenance.warnings) {
+    attribute(place, "warning_" + std::to_string(i++), warning);
+  }
 }
 
 void Hdf5File::write(const std::filesystem::path& path) const {

@@ -34,13 +34,10 @@ std::string summary_json(const Product& product, const Provenance& provenance,
 namespace kinds::json {
 namespace {
 
-std::vector<std::filesystem::path> write_summary(const Product& product,
-                                                 const Provenance& provenance,
-                                                 const std::filesystem::path& folder,
-                                                 PictureStyle) {
-  if (product.quantities.empty()) return {};
-  const std::filesystem::path path = file_in(folder, "summary", "json");
-  write_file_whole(path, summary_json(product, provenance));
+std::vector<std::filesystem::path> write_summary(const WriterJob& job) {
+  if (job.product.quantities.empty()) return {};
+  const std::filesystem::path path = file_in(job.folder, "summary", "json");
+  write_file_whole(path, summary_json(job.product, job.provenance));
   return {path};
 }
 

@@ -35,20 +35,6 @@ Json provenance_json(const Provenance& provenance) {
   return json;
 }
 
-Json map_json(const Map& map, const Provenance& provenance) {
-  return {{"name", clean_text(map.name)},
-          {"title", clean_text(map.title)},
-          {"unit", clean_text(map.unit)},
-          {"x_label", clean_text(map.x_label)},
-          {"y_label", clean_text(map.y_label)},
-          {"x_low", map.x_low},
-          {"x_high", map.x_high},
-          {"y_low", map.y_low},
-          {"y_high", map.y_high},
-          {"rows", "top row is the largest y"},
-          {"provenance", provenance_json(provenance)}};
-}
-
 std::string ascii_line(const Json& json) {
   return json.dump(-1, ' ', true);
 }
@@ -61,11 +47,22 @@ std::vector<ImageChannel> map_channels(const Map& map) {
 }
 
 ImageMetadata map_metadata(const Map& map, const Provenance& provenance) {
+  const Json description = {{"name", clean_text(map.name)},
+                            {"title", clean_text(map.title)},
+                            {"unit", clean_text(map.unit)},
+                            {"x_label", clean_text(map.x_label)},
+                            {"y_label", clean_text(map.y_label)},
+                            {"x_low", map.x_low},
+                            {"x_high", map.x_high},
+                            {"y_low", map.y_low},
+                            {"y_high", map.y_high},
+                            {"rows", "top row is the largest y"},
+                            {"provenance", provenance_json(provenance)}};
   const std::string inputs = joined_text(provenance.inputs, " ", [&](const auto& item) {
     const auto& [file, hash] = item;
     return file + ":" + hash;
   });
-  return {.description = ascii_line(map_json(map, provenance)),
+  return {.description = ascii_line(description),
           .title = clean_text(map.title),
           .program = clean_text(provenance.program + " " + provenance.version),
           .texts = {{"photorque:unit", clean_text(map.unit)},

@@ -12,10 +12,6 @@ namespace photorque {
 // JSON object {"program", "version", "git_hash", "seed", "inputs": {file: hash}}.
 nlohmann::ordered_json provenance_json(const Provenance& provenance);
 
-// JSON object {"name", "title", "unit", "x_label", …, "rows": "top row is the largest y",
-// "provenance"}.
-nlohmann::ordered_json map_json(const Map& map, const Provenance& provenance);
-
 // JSON on one line of ASCII (other characters escaped), for formats whose text is ASCII or Latin-1.
 std::string ascii_line(const nlohmann::ordered_json& json);
 
@@ -23,7 +19,8 @@ std::string ascii_line(const nlohmann::ordered_json& json);
 // run downwards: row 0 is the largest y. Throws InputError if the map's sizes disagree.
 std::vector<ImageChannel> map_channels(const Map& map);
 
-// Metadata of a map: the description is map_json() on one line; texts and numbers are
+// Metadata of a map: the description is a JSON object {"name", "title", "unit", "x_label", …,
+// "rows": "top row is the largest y", "provenance"} on one line; texts and numbers are
 // "photorque:unit", "photorque:x_low", …
 ImageMetadata map_metadata(const Map& map, const Provenance& provenance);
 

@@ -10,15 +10,13 @@
 namespace photorque::kinds::pdf {
 
 WriterKind kind() {
-  return {"pdf", "Maps and plots as PDF pages",
-          [](const Product& product, const Provenance& provenance,
-             const std::filesystem::path& folder, PictureStyle style) {
+  return {"pdf", "Maps and plots as PDF pages", [](const WriterJob& job) {
             const auto put = [&](const auto& item, const std::filesystem::path& path) {
-              const PdfText text{item.title, ascii_line(provenance_json(provenance)),
-                                 provenance.program + " " + provenance.version};
-              write_file_whole(path, pdf_of(item, provenance, text, style));
+              const PdfText text{item.title, ascii_line(provenance_json(job.provenance)),
+                                 job.provenance.program + " " + job.provenance.version};
+              write_file_whole(path, page_of(item, job.provenance, job.style).pdf(text));
             };
-            return write_each(folder, "pdf", put, product.maps, product.plots);
+            return job.each("pdf", put, job.product.maps, job.product.plots);
           }};
 }
 

@@ -10,19 +10,17 @@
 namespace photorque::kinds::png {
 
 WriterKind kind() {
-  return {"png", "Maps with colour bar and plots, as pictures",
-          [](const Product& product, const Provenance& provenance,
-             const std::filesystem::path& folder, PictureStyle style) {
+  return {"png", "Maps with colour bar and plots, as pictures", [](const WriterJob& job) {
             const auto put_map = [&](const Map& map, const std::filesystem::path& path) {
-              write_png(path, map_picture(map, provenance, style).picture,
-                        map_metadata(map, provenance));
+              write_png(path, page_of(map, job.provenance, job.style).pixels(),
+                        map_metadata(map, job.provenance));
             };
             const auto put_plot = [&](const Plot& plot, const std::filesystem::path& path) {
-              write_png(path, plot_picture(plot, provenance, style),
-                        picture_metadata(plot.title, provenance));
+              write_png(path, page_of(plot, job.provenance, job.style).pixels(),
+                        picture_metadata(plot.title, job.provenance));
             };
-            auto paths = write_each(folder, "png", put_map, product.maps);
-            std::ranges::move(write_each(folder, "png", put_plot, product.plots),
+            auto paths = job.each("png", put_map, job.product.maps);
+            std::ranges::move(job.each("png", put_plot, job.product.plots),
                               std::back_inserter(paths));
             return paths;
           }};

@@ -70,7 +70,7 @@ std::vector<fs::path> write_formats(const Product& product, const Provenance& pr
   require_distinct_files(product);
   std::vector<fs::path> paths;
   for (const WriterKind& kind : kinds_named(formats)) {
-    const std::vector<fs::path> written = kind.write(product, provenance, folder, style);
+    const std::vector<fs::path> written = kind.write({product, provenance, folder, style});
     paths.insert(paths.end(), written.begin(), written.end());
   }
   return paths;

@@ -29,14 +29,12 @@ std::string with_metadata(const std::string& svg, const std::string& title,
 }  // namespace
 
 WriterKind kind() {
-  return {"svg", "Maps and plots as scalable pictures",
-          [](const Product& product, const Provenance& provenance,
-             const std::filesystem::path& folder, PictureStyle style) {
+  return {"svg", "Maps and plots as scalable pictures", [](const WriterJob& job) {
             const auto put = [&](const auto& item, const std::filesystem::path& path) {
-              const std::string svg = svg_of(item, provenance, style);
-              write_file_whole(path, with_metadata(svg, item.title, provenance));
+              const std::string svg = page_of(item, job.provenance, job.style).svg();
+              write_file_whole(path, with_metadata(svg, item.title, job.provenance));
             };
-            return write_each(folder, "svg", put, product.maps, product.plots);
+            return job.each("svg", put, job.product.maps, job.product.plots);
           }};
 }
 

@@ -71,12 +71,11 @@ void write_map(const Map& map, const Provenance& provenance, const std::filesyst
 
 WriterKind kind() {
   return {"vtkhdf", "Maps as VTKHDF images with their standard errors, for ParaView",
-          [](const Product& product, const Provenance& provenance,
-             const std::filesystem::path& folder, PictureStyle) {
+          [](const WriterJob& job) {
             const auto put = [&](const Map& map, const std::filesystem::path& path) {
-              write_map(map, provenance, path);
+              write_map(map, job.provenance, path);
             };
-            return write_each(folder, "vtkhdf", put, product.maps);
+            return job.each("vtkhdf", put, job.product.maps);
           }};
 }
 

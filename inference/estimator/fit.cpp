@@ -139,7 +139,6 @@ class Fitter {
     result.hessian = std::move(last.sums.matrix);
     result.first_shared = result.parameters.first_shared();
     result.run_chi2 = std::move(last.run_chi2);
-    result.run_samples = std::move(last.run_samples);
     if (!std::isfinite(result.chi2) && !is_out_of_reach_) {
       result.termination = Termination::not_evaluable;
     }

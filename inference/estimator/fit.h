@@ -77,8 +77,7 @@ struct Fit {
   double data_chi2 = infinity;  // excluding the priors
   int64_t samples = 0;
   std::vector<double> run_chi2;  // one per run, excluding the priors
-  std::vector<int64_t> run_samples;
-  ArrowMatrix hessian;  // H at the final point, of all parameters in their order
+  ArrowMatrix hessian;           // H at the final point, of all parameters in their order
   Eigen::Index first_shared = 0;
   bool converged = false;
   Termination termination = Termination::not_evaluable;  // termination of the last window

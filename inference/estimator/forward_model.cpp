@@ -50,7 +50,6 @@ Evaluation evaluate(const ForwardModel& model, const Eigen::VectorXd& at, const 
       const NormalSums sums = model.sums(at, run, request);
       if (!std::isfinite(sums.chi2)) throw NumericalError("the residuals are not finite");
       result.run_chi2.push_back(sums.chi2);
-      result.run_samples.push_back(sums.samples);
       if (request.derivatives) {
         scatter(sums, parameters, run, result.sums);
       } else {
@@ -61,7 +60,6 @@ Evaluation evaluate(const ForwardModel& model, const Eigen::VectorXd& at, const 
   } catch (const NumericalError&) {
     result.sums = no_sums(parameters, infinity);
     result.run_chi2.clear();
-    result.run_samples.clear();
     return result;
   }
   result.data_chi2 = result.sums.chi2;
@@ -126,17 +124,18 @@ Eigen::VectorXd ResidualModel::stepped(const Eigen::VectorXd& at,
 }
 
 ResidualFunction with_differences(
-    std::function<Eigen::VectorXd(const Eigen::VectorXd& values)> residuals, double step) {
-  return [residuals = std::move(residuals), step](const Eigen::VectorXd& values, Eigen::Index,
+    std::function<Eigen::VectorXd(const Eigen::VectorXd& values, Eigen::Index run)> residuals,
+    double step) {
+  return [residuals = std::move(residuals), step](const Eigen::VectorXd& values, Eigen::Index run,
                                                   Eigen::VectorXd& at, Eigen::MatrixXd* slopes) {
-    at = residuals(values);
+    at = residuals(values, run);
     if (slopes == nullptr) return;
     slopes->resize(at.size(), values.size());
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       Eigen::VectorXd low = values, high = values;
       low[k] -= step;
       high[k] += step;
-      slopes->col(k) = (residuals(low) - residuals(high)) / (2.0 * step);
+      slopes->col(k) = (residuals(low, run) - residuals(high, run)) / (2.0 * step);
     }
   };
 }

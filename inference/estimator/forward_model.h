@@ -43,10 +43,9 @@ class ForwardModel {
 
 // Sums of all runs and of the priors at a point.
 struct Evaluation {
-  SumsOfRuns sums;                   // χ² is infinite where the model cannot be evaluated
-  double data_chi2 = infinity;       // excluding the priors
-  std::vector<double> run_chi2;      // one per run
-  std::vector<int64_t> run_samples;  // one per run
+  SumsOfRuns sums;               // χ² is infinite where the model cannot be evaluated
+  double data_chi2 = infinity;   // excluding the priors
+  std::vector<double> run_chi2;  // one per run
 };
 
 // Evaluates all runs and the priors at a point. χ² is infinite if a run cannot be evaluated.
@@ -83,6 +82,7 @@ class ResidualModel final : public ForwardModel {
 // Slopes by central differences with `step` (absolute: parameters are logarithms or of order one).
 // The error is step² times the third derivative, plus 1e-16/step from rounding.
 ResidualFunction with_differences(
-    std::function<Eigen::VectorXd(const Eigen::VectorXd& values)> residuals, double step = 1e-5);
+    std::function<Eigen::VectorXd(const Eigen::VectorXd& values, Eigen::Index run)> residuals,
+    double step = 1e-5);
 
 }  // namespace photorque::inference

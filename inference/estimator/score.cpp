@@ -26,10 +26,6 @@ Score solve_score(const Eigen::MatrixXd& S, const Eigen::VectorXd& s,
   return score;
 }
 
-Score Projected::score(const std::vector<Eigen::Index>& which) const {
-  return solve_score(information(which, which), gradient(which), before(which));
-}
-
 Score Projected::score(Eigen::Index first, Eigen::Index count) const {
   return solve_score(information.block(first, first, count, count), gradient.segment(first, count),
                      before.segment(first, count));
@@ -46,6 +42,19 @@ Projected project_out(const NormalSums& sums, Eigen::Index fitted) {
                     cross * nuisance.solve(Eigen::VectorXd(sums.gradient.head(fitted)));
   result.before = own.diagonal();
   return result;
+}
+
+Projected project_onto(const NormalSums& sums, const std::vector<Eigen::Index>& kept) {
+  std::vector<bool> is_kept(static_cast<size_t>(sums.gradient.size()), false);
+  for (const Eigen::Index i : kept) is_kept[static_cast<size_t>(i)] = true;
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < sums.gradient.size(); ++i) {
+    if (!is_kept[static_cast<size_t>(i)]) order.push_back(i);
+  }
+  const auto fitted = static_cast<Eigen::Index>(order.size());
+  order.insert(order.end(), kept.begin(), kept.end());
+  const NormalSums sorted{sums.matrix(order, order), sums.gradient(order), sums.chi2, sums.samples};
+  return project_out(sorted, fitted);
 }
 
 Projected project_out(const SumsOfRuns& sums, Eigen::Index fitted) {

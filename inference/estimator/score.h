@@ -35,12 +35,12 @@ struct Projected {
   Eigen::VectorXd gradient;
   Eigen::VectorXd before;  // argument of solve_score()
 
-  // Score of the parameters `which` together.
-  Score score(const std::vector<Eigen::Index>& which) const;
   // Score of the parameters [first, first + count).
   Score score(Eigen::Index first, Eigen::Index count) const;
 };
 Projected project_out(const NormalSums& sums, Eigen::Index fitted);
+// S and s of the parameters `kept`, in that order; all others are projected out.
+Projected project_onto(const NormalSums& sums, const std::vector<Eigen::Index>& kept);
 // Projects out the first `fitted` parameters of several runs, which include all run parameters.
 Projected project_out(const SumsOfRuns& sums, Eigen::Index fitted);
 

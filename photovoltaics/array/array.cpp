@@ -89,8 +89,12 @@ CellLight PreparedArray::light(const LightBins& bins) const {
 
 CellCover cover_of(const ArrayDesign& design, const ArrayLight& light) {
   if (design.places) return {light, design.places->parts};
-  return {light,
-          cell_rectangles(light, design.columns, design.rows, design.gap_m, design.margin_m)};
+  std::vector<std::vector<BinPart>> parts;
+  for (const CellRectangle& cell :
+       cell_rectangles(light.grid, design.columns, design.rows, design.gap_m, design.margin_m)) {
+    parts.push_back(parts_of_rectangle(cell, light.grid));
+  }
+  return {light, parts};
 }
 
 // Prepares the array for its light; the tables of the cells are not computed.
@@ -163,14 +167,6 @@ CellTables laws_at(const ArrayDesign& design, std::span<const double> cell_area_
   return tables;
 }
 
-void require_finite(const std::vector<double>& current_A) {
-  for (size_t i = 0; i < current_A.size(); ++i) {
-    if (!std::isfinite(current_A[i])) {
-      throw NumericalError("the light on cell " + std::to_string(i) + " is no finite number");
-    }
-  }
-}
-
 void prepare_tables(PreparedArray& array, const LightBins& bins, bool once = false) {
   const std::vector<double> current_A = array.light(bins).current_A;
   array.tables =
@@ -182,23 +178,23 @@ double sum_of(const std::vector<double>& values) {
 }
 
 // Results with a standard error.
-struct Headline {
-  enum Item {
-    power,
-    voltage,
-    current,
-    light,
-    entering,
-    alone,
-    efficiency,
-    cells,
-    mismatch,
-    temperature,
-    count
-  };
-  std::array<double, count> value{};
+namespace item {
+enum Index : size_t {
+  power,
+  voltage,
+  current,
+  light,
+  entering,
+  alone,
+  efficiency,
+  cells,
+  mismatch,
+  temperature,
+  count
 };
-using Estimates = std::array<Estimate, Headline::count>;
+}  // namespace item
+using Headline = std::array<double, item::count>;
+using Estimates = std::array<Estimate, item::count>;
 
 Headline headline(const PreparedArray& array, const LightBins& bins) {
   const CellLight light = array.light(bins);
@@ -210,9 +206,16 @@ Headline headline(const PreparedArray& array, const LightBins& bins) {
     alone_W += law->curve().maximum_power(light.current_A[i]).power_W();
   }
   const double power_W = best.power_W();
-  return {{power_W, best.voltage_V, best.current_A, light_W, sum_of(light.entering_W), alone_W,
-           light_W > 0 ? power_W / light_W : 0.0, light_W > 0 ? alone_W / light_W : 0.0,
-           alone_W > 0 ? 1.0 - power_W / alone_W : 0.0, array.temperature_K}};
+  return {power_W,
+          best.voltage_V,
+          best.current_A,
+          light_W,
+          sum_of(light.entering_W),
+          alone_W,
+          light_W > 0 ? power_W / light_W : 0.0,
+          light_W > 0 ? alone_W / light_W : 0.0,
+          alone_W > 0 ? 1.0 - power_W / alone_W : 0.0,
+          array.temperature_K};
 }
 
 // The steady-state temperature of the cells in this light. The photocurrents at the temperature of
@@ -244,46 +247,13 @@ Headline slope_of_headline(PreparedArray& array, const LightBins& bins) {
   };
   Headline slope = at(kelvin + step_K);
   const Headline colder = at(kelvin - step_K);
-  for (size_t k = 0; k < Headline::count; ++k) {
-    slope.value[k] = (slope.value[k] - colder.value[k]) / (2.0 * step_K);
+  for (size_t k = 0; k < item::count; ++k) {
+    slope[k] = (slope[k] - colder[k]) / (2.0 * step_K);
   }
   array.warm_to(kelvin);
   prepare_tables(array, bins);
   return slope;
 }
-
-// Change of the steady-state temperature with the light, to first order, computed from the results
-// in the other light at the present temperature.
-class FollowingTemperature {
- public:
-  FollowingTemperature(const PreparedArray& array, const Headline& here, const Headline& slope)
-      : here_(here), slope_(slope) {
-    if (!array.design.heat) return;
-    const CellPlate plate(*array.design.heat, array.total_area_m2);
-    absorptance_ = array.design.heat->absorptance;
-    W_per_K_ = array.total_area_m2 * plate.loss_slope_W_m2_K(array.temperature_K) +
-               slope.value[Headline::power];
-  }
-
-  // Change of temperature per relative change of all light; the power is proportional to the light.
-  double kelvin_per_light() const {
-    if (!(W_per_K_ > 0.0)) return 0.0;
-    return (absorptance_ * here_.value[Headline::light] - here_.value[Headline::power]) / W_per_K_;
-  }
-
-  void follow(Headline& other) const {
-    if (!(W_per_K_ > 0.0)) return;
-    const auto change = [&](Headline::Item item) { return other.value[item] - here_.value[item]; };
-    const double warmer_K =
-        (absorptance_ * change(Headline::light) - change(Headline::power)) / W_per_K_;
-    for (size_t k = 0; k < Headline::count; ++k) other.value[k] += warmer_K * slope_.value[k];
-  }
-
- private:
-  const Headline& here_;
-  const Headline& slope_;
-  double absorptance_ = 0.0, W_per_K_ = 0.0;
-};
 
 // The mean of all replicates except one, at least zero: noise can make it negative.
 std::vector<double> mean_without(int replicate, const BinSums& sums, std::span<const double> mean) {
@@ -308,38 +278,43 @@ std::vector<LightBins> leave_one_out(const ArrayLight& light, const LightBins& m
 
 // Tukey's jackknife error of a number from its values without each replicate in turn.
 double jackknife_error(std::span<const double> without) {
-  const auto count = static_cast<double>(without.size());
-  double average = 0.0, squares = 0.0;
-  for (const double value : without) average += value / count;
-  for (const double value : without) squares += (value - average) * (value - average);
-  return std::sqrt((count - 1.0) / count * squares);
+  return static_cast<double>(without.size() - 1) * estimate_from_replicates(without).standard_error;
 }
 
 // The values at the mean of all replicates, with Tukey's jackknife errors. The bias is of second
-// order in the error and not removed, so that the results agree with the printed curve.
+// order in the error and not removed, so that the results agree with the printed curve. In the
+// steady state, the temperature follows the light to first order.
 Estimates estimate(const PreparedArray& array, const ArrayLight& light, const LightBins& mean,
                    const Headline& slope) {
   const Headline value = headline(array, mean);
-  const FollowingTemperature temperature(array, value, slope);
   Estimates estimates{};
-  for (size_t k = 0; k < Headline::count; ++k) estimates[k].value = value.value[k];
+  for (size_t k = 0; k < item::count; ++k) estimates[k].value = value[k];
   if (light.power_W.replicates < 2) return estimates;
-  std::array<std::vector<double>, Headline::count> without;
+  double absorptance = 0.0, W_per_K = 0.0;
+  if (array.design.heat) {
+    const CellPlate plate(*array.design.heat, array.total_area_m2);
+    absorptance = array.design.heat->absorptance;
+    W_per_K =
+        array.total_area_m2 * plate.loss_slope_W_m2_K(array.temperature_K) + slope[item::power];
+  }
+  const auto warmer_K = [&](double light_W, double power_W) {
+    return W_per_K > 0.0 ? (absorptance * light_W - power_W) / W_per_K : 0.0;
+  };
+  std::array<std::vector<double>, item::count> without;
   for (const LightBins& others : leave_one_out(light, mean)) {
-    Headline one = headline(array, others);
-    temperature.follow(one);
-    for (size_t k = 0; k < Headline::count; ++k) without[k].push_back(one.value[k]);
+    const Headline one = headline(array, others);
+    const double change_K =
+        warmer_K(one[item::light] - value[item::light], one[item::power] - value[item::power]);
+    for (size_t k = 0; k < item::count; ++k) without[k].push_back(one[k] + change_K * slope[k]);
   }
   const double common = light.power_W.common_error();
-  for (size_t k = 0; k < Headline::count; ++k) {
-    estimates[k].standard_error = jackknife_error(without[k]);
-    if (k == Headline::temperature) {
-      estimates[k].standard_error =
-          std::hypot(estimates[k].standard_error, common * temperature.kelvin_per_light());
-    } else {
-      estimates[k] = with_common_error(estimates[k], common);
-    }
+  for (size_t k = 0; k < item::count; ++k) {
+    estimates[k] = with_common_error({value[k], jackknife_error(without[k])}, common);
   }
+  // With all light, the power changes in proportion.
+  estimates[item::temperature].standard_error =
+      std::hypot(jackknife_error(without[item::temperature]),
+                 common * warmer_K(value[item::light], value[item::power]));
   return estimates;
 }
 
@@ -408,27 +383,31 @@ ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
                            std::span<const double> responsivity_A_W) {
   const LightBins mean = mean_light(light);
   PreparedArray array = prepare_light(design, light, responsivity_A_W);
-  require_finite(array.light(mean).current_A);
+  CellLight cells = array.light(mean);
+  for (size_t i = 0; i < cells.current_A.size(); ++i) {
+    if (std::isfinite(cells.current_A[i])) continue;
+    throw NumericalError("the light on cell " + std::to_string(i) + " is no finite number");
+  }
   if (design.heat) array.warm_to(steady_temperature_K(array, mean));
   const Headline slope = slope_of_headline(array, mean);
   const Estimates estimates = estimate(array, light, mean, slope);
   ArrayResult result;
-  result.power_W = estimates[Headline::power];
-  result.voltage_V = estimates[Headline::voltage];
-  result.current_A = estimates[Headline::current];
-  result.power_on_cells_W = estimates[Headline::light];
-  result.power_entering_W = estimates[Headline::entering];
+  result.power_W = estimates[item::power];
+  result.voltage_V = estimates[item::voltage];
+  result.current_A = estimates[item::current];
+  result.power_on_cells_W = estimates[item::light];
+  result.power_entering_W = estimates[item::entering];
   result.entry_known = light.entry.bins > 0;
-  result.sum_of_cells_W = estimates[Headline::alone];
-  result.efficiency = estimates[Headline::efficiency];
-  result.efficiency_of_cells = estimates[Headline::cells];
-  result.mismatch_loss = estimates[Headline::mismatch];
+  result.sum_of_cells_W = estimates[item::alone];
+  result.efficiency = estimates[item::efficiency];
+  result.efficiency_of_cells = estimates[item::cells];
+  result.mismatch_loss = estimates[item::mismatch];
   result.cell_area_m2 = array.area_m2;
   if (design.places) result.cell_centre_m = design.places->centres;
   result.area_of_cells_m2 = array.total_area_m2;
-  result.temperature_K = estimates[Headline::temperature];
-  result.power_per_K_W = slope.value[Headline::power];
-  CellLight cells = array.light(mean);
+  result.temperature_K = estimates[item::temperature];
+  result.power_per_K_W = slope[item::power];
+  cells = array.light(mean);  // at the temperature of the array
   result.cell_light_W = std::move(cells.incident_W);
   result.cell_photocurrent_A = std::move(cells.current_A);
   const ArrayCurve curve = array.curve(result.cell_photocurrent_A);

@@ -146,7 +146,6 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
       temperature_K = plate->step(temperature_K, heating_W_m2, step_s).end_K;
     }
   }
-  day.final_temperature_K = temperature_K;
   day.mean_array_W = day.array_energy_J / s.duration_s;
   return day;
 }
@@ -175,7 +174,7 @@ DaySettings read_day(const Settings& s) {
 
 Product day_product(const DayResult& day) {
   Product product;
-  product.quantities = {{"day_end_cell_temperature_K", {day.final_temperature_K, 0.0}},
+  product.quantities = {{"day_end_cell_temperature_K", {day.temperature_K.back(), 0.0}},
                         {"mean_array_power_W", {day.mean_array_W, 0.0}},
                         {"battery_left_J", {day.charge_J.back(), 0.0}}};
   std::vector<double> hours, charge_Wh;

@@ -57,7 +57,6 @@ struct DaySettings {
 // History with one entry per step and one for the start, and its sums.
 struct DayResult {
   std::vector<double> time_s, temperature_K, array_W, charge_J;
-  double final_temperature_K = 0.0;
   double array_energy_J = 0.0;
   std::optional<double> empty_after_s;  // time at which the load is first not served
   double mean_array_W = 0.0;

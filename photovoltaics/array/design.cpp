@@ -24,20 +24,6 @@ std::vector<int> serpentine(int columns, int rows, bool along_columns) {
   return order;
 }
 
-using Rows = std::vector<CellGroup>;
-
-ArrayWiring::String bypassed_string(const Rows& rows, const RegularWiring& options) {
-  ArrayWiring::String string{{}, options.blocking};
-  const auto every = static_cast<size_t>(options.bypass_every);
-  for (size_t first = 0; first < rows.size(); first += every) {
-    const size_t last = std::min(rows.size(), first + every);
-    string.substrings.push_back({{rows.begin() + static_cast<std::ptrdiff_t>(first),
-                                  rows.begin() + static_cast<std::ptrdiff_t>(last)},
-                                 options.bypass});
-  }
-  return string;
-}
-
 // One level of a regular circuit: `count` equal parts in series or in parallel.
 struct Level {
   CellGroup::Join join = CellGroup::Join::series;
@@ -130,7 +116,7 @@ class WiringReader {
     for (const SettingsNode& string : list(array_.raw(array_key::wiring), "strings")) {
       ArrayWiring::String joined{{}, blocking};
       for (const SettingsNode& substring : list(string, "substrings")) {
-        Rows rows;
+        std::vector<CellGroup> rows;
         for (const SettingsNode& row : list(substring, "cells")) {
           rows.push_back(read_group(row, CellGroup::Join::parallel, 0));
         }
@@ -287,13 +273,6 @@ CellModel read_cell(const Settings& array) {
   return replaced(model, s, s.has(cell_key::reference_area));
 }
 
-// The model with its parameters stated for another area.
-CellModel stated_for(double area_m2, CellModel model) {
-  model.reference = parameters_at(model, area_m2, model.reference.temperature_K);
-  model.reference_area_m2 = area_m2;
-  return model;
-}
-
 // The overrides in the order of their cells.
 std::vector<CellOverride> read_overrides(const Settings& array, const ArrayDesign& design) {
   std::vector<CellOverride> overrides;
@@ -310,8 +289,12 @@ std::vector<CellOverride> read_overrides(const Settings& array, const ArrayDesig
     }
     one.photocurrent_factor = s.get(cell_key::photocurrent_factor);
     const bool own_area = s.has(cell_key::reference_area);
-    const CellModel others =
-        own_area ? stated_for(s.get(cell_key::reference_area), design.cell) : design.cell;
+    CellModel others = design.cell;
+    if (own_area) {
+      others.reference_area_m2 = s.get(cell_key::reference_area);
+      others.reference =
+          parameters_at(design.cell, others.reference_area_m2, others.reference.temperature_K);
+    }
     one.model = replaced(others, s, own_area || area_of_others);
     overrides.push_back(one);
   }
@@ -353,16 +336,22 @@ const CellOverride* ArrayDesign::override_of(size_t cell_index) const {
 
 ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options) {
   const std::vector<int> order = serpentine(columns, rows, options.along_columns);
-  const size_t length = order.size() / static_cast<size_t>(options.strings);
   const auto count = static_cast<size_t>(options.strings);
-  std::vector<Rows> strings(options.cross_tied ? 1 : count);
-  for (size_t i = 0; i < (options.cross_tied ? length : order.size()); ++i) {
-    std::vector<int> row = {order[i]};
-    for (size_t s = 1; options.cross_tied && s < count; ++s) row.push_back(order[s * length + i]);
-    strings[options.cross_tied ? 0 : i / length].emplace_back(row);
-  }
+  const auto every = static_cast<size_t>(options.bypass_every);
+  const size_t length = order.size() / count;
   ArrayWiring wiring;
-  for (const Rows& string : strings) wiring.strings.push_back(bypassed_string(string, options));
+  for (size_t s = 0; s < (options.cross_tied ? 1 : count); ++s) {
+    ArrayWiring::String string{{}, options.blocking};
+    for (size_t i = 0; i < length; ++i) {
+      std::vector<int> row = {order[s * length + i]};
+      for (size_t k = 1; options.cross_tied && k < count; ++k) {
+        row.push_back(order[k * length + i]);
+      }
+      if (i % every == 0) string.substrings.push_back({{}, options.bypass});
+      string.substrings.back().rows.emplace_back(row);
+    }
+    wiring.strings.push_back(std::move(string));
+  }
   return wiring;
 }
 

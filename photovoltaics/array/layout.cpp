@@ -1,31 +1,12 @@
 #include "photovoltaics/array/layout.h"
 
 #include <algorithm>
+#include <span>
 
 #include "core/errors.h"
 
 namespace photorque {
 namespace {
-
-struct Place {
-  size_t string, substring;
-};
-
-// The wiring as a list of places, one per cell.
-std::vector<Place> places_of(const ArrayWiring& wiring) {
-  std::vector<Place> places;
-  for (size_t s = 0; s < wiring.strings.size(); ++s) {
-    for (size_t b = 0; b < wiring.strings[s].substrings.size(); ++b) {
-      for (const auto& row : wiring.strings[s].substrings[b].rows) {
-        if (!row.is_cell()) {
-          throw InputError({}, "array.layout", "cells tied in parallel", "cells in series");
-        }
-        places.push_back({s, b});
-      }
-    }
-  }
-  return places;
-}
 
 class Search {
  public:
@@ -35,8 +16,19 @@ class Search {
         tables_(tables),
         lights_(lights),
         max_tried_(max_tried),
-        places_(places_of(start)),
-        cells_(start.cells()) {}
+        cells_(start.cells()) {
+    for (const auto& string : start.strings) {
+      first_.push_back(sizes_.size());
+      for (const auto& substring : string.substrings) {
+        if (!std::ranges::all_of(substring.rows, &CellGroup::is_cell)) {
+          throw InputError({}, "array.layout", "cells tied in parallel", "cells in series");
+        }
+        substring_of_.insert(substring_of_.end(), substring.rows.size(), sizes_.size());
+        sizes_.push_back(substring.rows.size());
+      }
+    }
+    first_.push_back(sizes_.size());
+  }
 
   LayoutResult run() {
     LayoutResult result;
@@ -109,7 +101,7 @@ class Search {
       better = false;
       for (size_t i = 0; i < cells.size(); ++i) {
         for (size_t j = i + 1; j < cells.size(); ++j) {
-          if (together(i, j)) continue;
+          if (substring_of_[i] == substring_of_[j]) continue;
           if (tried_ >= max_tried_ || bound_reached()) return;
           std::swap(cells[i], cells[j]);
           const double trial = power_W(cells);
@@ -125,74 +117,57 @@ class Search {
     }
   }
 
-  bool together(size_t i, size_t j) const {
-    return places_[i].string == places_[j].string && places_[i].substring == places_[j].substring;
-  }
+  using Filled = std::vector<std::vector<int>>;  // cells of each substring
 
   // Visits every assignment once. Each cell in turn is added to every substring with room. Of
   // several empty substrings of equal size, and of several empty equal strings, only the first one
   // is used.
   template <typename Visit>
-  bool visit_assignments(std::vector<std::vector<std::vector<int>>>& filled, size_t next,
-                         Visit&& visit) {
+  bool visit_assignments(Filled& filled, size_t next, const Visit& visit) {
     if (next == cells_.size()) return visit(filled);
-    for (size_t s = 0; s < filled.size(); ++s) {
-      if (string_empty(filled, s) && has_equal_string_before(filled, s)) continue;
-      for (size_t b = 0; b < filled[s].size(); ++b) {
-        const size_t room = shape_.strings[s].substrings[b].rows.size();
-        if (filled[s][b].size() == room) continue;
-        if (filled[s][b].empty() && has_equal_substring_before(filled, s, b, room)) continue;
-        filled[s][b].push_back(cells_[next]);
-        const bool go_on = visit_assignments(filled, next + 1, visit);
-        filled[s][b].pop_back();
-        if (!go_on) return false;
-      }
+    for (size_t b = 0; b < filled.size(); ++b) {
+      if (filled[b].size() == sizes_[b] || has_equal_before(filled, b)) continue;
+      filled[b].push_back(cells_[next]);
+      const bool go_on = visit_assignments(filled, next + 1, visit);
+      filled[b].pop_back();
+      if (!go_on) return false;
     }
     return true;
   }
 
-  using Filled = std::vector<std::vector<std::vector<int>>>;
-
-  Filled nothing_filled() const {
-    Filled filled;
-    for (const auto& string : shape_.strings) filled.emplace_back(string.substrings.size());
-    return filled;
-  }
-  static bool string_empty(const Filled& filled, size_t s) {
-    return std::ranges::all_of(filled[s], [](const auto& substring) { return substring.empty(); });
-  }
-  bool same_shape(size_t a, size_t b) const {
-    const auto &x = shape_.strings[a].substrings, &y = shape_.strings[b].substrings;
-    return std::ranges::equal(
-        x, y, [](const auto& p, const auto& q) { return p.rows.size() == q.rows.size(); });
-  }
-  bool has_equal_string_before(const Filled& filled, size_t s) const {
-    for (size_t t = 0; t < s; ++t) {
-      if (same_shape(s, t) && string_empty(filled, t)) return true;
+  bool has_equal_before(const Filled& filled, size_t substring) const {
+    if (!filled[substring].empty()) return false;
+    size_t own = 0;  // string
+    while (first_[own + 1] <= substring) ++own;
+    for (size_t c = first_[own]; c < substring; ++c) {
+      if (filled[c].empty() && sizes_[c] == sizes_[substring]) return true;
     }
-    return false;
-  }
-  bool has_equal_substring_before(const Filled& filled, size_t s, size_t b, size_t room) const {
-    for (size_t c = 0; c < b; ++c) {
-      if (filled[s][c].empty() && shape_.strings[s].substrings[c].rows.size() == room) return true;
+    const auto part = [&](const auto& of, size_t string) {
+      return std::span(of).subspan(first_[string], first_[string + 1] - first_[string]);
+    };
+    const auto is_empty = [&](size_t string) {
+      return std::ranges::all_of(part(filled, string), &std::vector<int>::empty);
+    };
+    for (size_t other = 0; is_empty(own) && other < own; ++other) {
+      if (is_empty(other) && std::ranges::equal(part(sizes_, own), part(sizes_, other)))
+        return true;
     }
     return false;
   }
 
   int64_t count_assignments() {
     int64_t count = 0;
-    Filled filled = nothing_filled();
+    Filled filled(sizes_.size());
     visit_assignments(filled, 0, [&](const Filled&) { return ++count <= max_tried_; });
     return count;
   }
 
   void try_all() {
-    Filled filled = nothing_filled();
+    Filled filled(sizes_.size());
     visit_assignments(filled, 0, [&](const Filled& full) {
       std::vector<int> cells;
-      for (const auto& string : full) {
-        for (const auto& substring : string)
-          cells.insert(cells.end(), substring.begin(), substring.end());
+      for (const auto& substring : full) {
+        cells.insert(cells.end(), substring.begin(), substring.end());
       }
       keep(cells, power_W(cells));
       return true;
@@ -203,7 +178,9 @@ class Search {
   const CellTables& tables_;
   const AttitudeLights& lights_;
   int64_t max_tried_, tried_ = 0;
-  std::vector<Place> places_;
+  std::vector<size_t> sizes_;         // of all substrings, string by string
+  std::vector<size_t> first_;         // first substring of each string, and the end
+  std::vector<size_t> substring_of_;  // per cell
   std::vector<int> cells_, best_;
   double best_W_ = 0.0, bound_W_ = 0.0;
 };

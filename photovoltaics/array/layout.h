@@ -29,9 +29,9 @@ struct LayoutResult {
 LayoutResult search_layout(const ArrayWiring& start, const CellTables& tables,
                            const AttitudeLights& lights, int64_t max_tried);
 
-// Upper bound of the power of every wiring with the shape of `shape` in a given light
-// (photocurrents of the cells). It is the sum of the cells' maxima or, for S ≥ 1 strings of n cells
-// of one table each, the following lower one.
+// Upper bound of the power of every wiring with the shape of `shape`: the mean of its bounds in
+// each light (photocurrents of the cells). In one light it is the sum of the cells' maxima or, for
+// S ≥ 1 strings of n cells of one table each, the following lower one.
 //
 // At a current I a cell has a voltage v(I) that rises with its light. The voltage of a substring is
 // an increasing convex function of Σv, because of its diode. Of all ways to cut some cells into
@@ -46,10 +46,6 @@ LayoutResult search_layout(const ArrayWiring& start, const CellTables& tables,
 // of their diode, and a real diode in parallel with them counts as one without drop. Both can only
 // raise the bound. The maximum over V is bounded from above within 1e-5.
 double layout_bound_W(const ArrayWiring& shape, const CellTables& tables,
-                      const std::vector<double>& light_A);
-
-// The mean of the bounds in several lights: a common wiring cannot exceed it.
-double layout_bound_W(const ArrayWiring& shape, const CellTables& tables,
-                      const std::vector<std::vector<double>>& lights_A);
+                      const AttitudeLights& lights);
 
 }  // namespace photorque

@@ -155,10 +155,8 @@ double sorted_bound_W(const ArrayWiring& shape, const CellTables& tables,
   return sum.max_power_W() + missing_V * sum.at(0.0);
 }
 
-}  // namespace
-
-double layout_bound_W(const ArrayWiring& shape, const CellTables& tables,
-                      const std::vector<double>& light_A) {
+double bound_in_light_W(const ArrayWiring& shape, const CellTables& tables,
+                        const std::vector<double>& light_A) {
   double alone_W = 0.0;
   for (const int cell : shape.cells()) {
     const auto i = static_cast<size_t>(cell);
@@ -170,13 +168,15 @@ double layout_bound_W(const ArrayWiring& shape, const CellTables& tables,
   return std::min(alone_W, sorted_bound_W(shape, tables, light_A) * (1.0 + rounding));
 }
 
+}  // namespace
+
 double layout_bound_W(const ArrayWiring& shape, const CellTables& tables,
-                      const std::vector<std::vector<double>>& lights_A) {
+                      const AttitudeLights& lights) {
   double sum_W = 0.0;
-  for (const std::vector<double>& light_A : lights_A) {
-    sum_W += layout_bound_W(shape, tables, light_A);
+  for (const std::vector<double>& light_A : lights) {
+    sum_W += bound_in_light_W(shape, tables, light_A);
   }
-  return sum_W / static_cast<double>(lights_A.size());
+  return sum_W / static_cast<double>(lights.size());
 }
 
 }  // namespace photorque

@@ -31,16 +31,7 @@ std::vector<Overlap> overlaps(double low, double high, double start, double end,
 
 ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums, const BinSums& entry) {
   const SurfaceGrid& grid = receiver.grid();
-  ArrayLight light{grid.width,
-                   grid.height,
-                   grid.u_low,
-                   grid.u_high,
-                   grid.v_low,
-                   grid.v_high,
-                   receiver.bands().count(),
-                   grid.area_m2,
-                   {},
-                   entry};
+  ArrayLight light{grid, receiver.bands().count(), {}, entry};
   light.power_W = {grid.bins() * static_cast<size_t>(light.bands), sums.replicates, {}, {}};
   const size_t bounced = receiver.direct_entries();
   for (int r = 0; r < sums.replicates; ++r) {
@@ -58,10 +49,10 @@ ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums, con
 
 void add_back_light(ArrayLight& light, const ArrayLight& back, double fraction) {
   constexpr double rounding_m2 = 1e-9;
-  bool is_alike = light.width == back.width && light.height == back.height &&
+  bool is_alike = light.grid.width == back.grid.width && light.grid.height == back.grid.height &&
                   light.power_W.sums.size() == back.power_W.sums.size();
-  for (size_t bin = 0; is_alike && bin < light.area_m2.size(); ++bin) {
-    is_alike = std::abs(light.area_m2[bin] - back.area_m2[bin]) <= rounding_m2;
+  for (size_t bin = 0; is_alike && bin < light.grid.bins(); ++bin) {
+    is_alike = std::abs(light.grid.area_m2[bin] - back.grid.area_m2[bin]) <= rounding_m2;
   }
   if (!is_alike) {
     throw InputError({}, "array.back.receiver", "another grid than that of array.receiver",
@@ -94,18 +85,7 @@ void add_back_light(ArrayLight& light, const ArrayLight& back, double fraction) 
   }
 }
 
-ArrayLight array_light(int width, int height, double u_length_m, double v_length_m,
-                       std::span<const double> irradiance_W_m2) {
-  const double area_m2 = u_length_m * v_length_m / (width * height);
-  ArrayLight light{width, height,     0.0, u_length_m,
-                   0.0,   v_length_m, 1,   std::vector<double>(irradiance_W_m2.size(), area_m2),
-                   {},    {}};
-  light.power_W = {irradiance_W_m2.size(), 1, {}};
-  for (const double e : irradiance_W_m2) light.power_W.sums.push_back(e * area_m2);
-  return light;
-}
-
-std::vector<CellRectangle> cell_rectangles(const ArrayLight& light, int columns, int rows,
+std::vector<CellRectangle> cell_rectangles(const SurfaceGrid& grid, int columns, int rows,
                                            double gap, double margin) {
   const auto side = [&](double length, int count, const char* name) {
     const double cell = (length - 2 * margin - (count - 1) * gap) / count;
@@ -117,48 +97,40 @@ std::vector<CellRectangle> cell_rectangles(const ArrayLight& light, int columns,
     }
     return cell;
   };
-  const double du = side(light.u_high - light.u_low, columns, "length along u");
-  const double dv = side(light.v_high - light.v_low, rows, "length along v");
+  const double du = side(grid.u_high - grid.u_low, columns, "length along u");
+  const double dv = side(grid.v_high - grid.v_low, rows, "length along v");
   std::vector<CellRectangle> cells;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      const double u = light.u_low + margin + column * (du + gap);
-      const double v = light.v_low + margin + row * (dv + gap);
+      const double u = grid.u_low + margin + column * (du + gap);
+      const double v = grid.v_low + margin + row * (dv + gap);
       cells.push_back({u, u + du, v, v + dv});
     }
   }
   return cells;
 }
 
-std::vector<BinPart> parts_of_rectangle(const CellRectangle& cell, const ArrayLight& light) {
+std::vector<BinPart> parts_of_rectangle(const CellRectangle& cell, const SurfaceGrid& grid) {
   std::vector<BinPart> parts;
-  for (const Overlap& v :
-       overlaps(cell.v_low, cell.v_high, light.v_low, light.v_high, light.height)) {
+  for (const Overlap& v : overlaps(cell.v_low, cell.v_high, grid.v_low, grid.v_high, grid.height)) {
     for (const Overlap& u :
-         overlaps(cell.u_low, cell.u_high, light.u_low, light.u_high, light.width)) {
+         overlaps(cell.u_low, cell.u_high, grid.u_low, grid.u_high, grid.width)) {
       parts.push_back(
-          {static_cast<uint32_t>(v.index * light.width + u.index), u.fraction * v.fraction});
+          {static_cast<uint32_t>(v.index * grid.width + u.index), u.fraction * v.fraction});
     }
   }
   return parts;
 }
 
-CellCover::CellCover(const ArrayLight& light, std::span<const CellRectangle> cells)
-    : bands_(static_cast<size_t>(light.bands)), first_{0} {
-  for (const CellRectangle& cell : cells) add(light, parts_of_rectangle(cell, light));
-}
-
 CellCover::CellCover(const ArrayLight& light, std::span<const std::vector<BinPart>> cells)
     : bands_(static_cast<size_t>(light.bands)), first_{0} {
-  for (const std::vector<BinPart>& parts : cells) add(light, parts);
-}
-
-void CellCover::add(const ArrayLight& light, std::span<const BinPart> parts) {
-  double area_m2 = 0.0;
-  for (const BinPart& part : parts) area_m2 += part.fraction * light.area_m2[part.bin];
-  parts_.insert(parts_.end(), parts.begin(), parts.end());
-  first_.push_back(parts_.size());
-  area_m2_.push_back(area_m2);
+  for (const std::vector<BinPart>& parts : cells) {
+    double area_m2 = 0.0;
+    for (const BinPart& part : parts) area_m2 += part.fraction * light.grid.area_m2[part.bin];
+    parts_.insert(parts_.end(), parts.begin(), parts.end());
+    first_.push_back(parts_.size());
+    area_m2_.push_back(area_m2);
+  }
 }
 
 std::vector<double> CellCover::gather(std::span<const double> power_W) const {

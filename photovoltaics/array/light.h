@@ -9,14 +9,10 @@
 
 namespace photorque {
 
-// Incident power on a grid of bins. The bins of `power_W` [W] are
-// (iv·width + iu)·bands + band; u and v rise with the index.
+// Incident power on a grid of bins. The bins of `power_W` [W] are bin · bands + band.
 struct ArrayLight {
-  int width = 0;
-  int height = 0;
-  double u_low = 0, u_high = 1, v_low = 0, v_high = 1;  // outer edges [m], or texture coordinates
+  SurfaceGrid grid;
   int bands = 1;
-  std::vector<double> area_m2;  // surface area per bin (without bands)
   BinSums power_W;
   // Sums of an IncidenceReceiver over the same grid, with the same number of replicates. Without
   // bins, all light counts as perpendicular.
@@ -31,10 +27,6 @@ ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums,
 // angle. Throws InputError unless the grids are equal.
 void add_back_light(ArrayLight& light, const ArrayLight& back, double fraction);
 
-// Light of a known irradiance on a whole grid, without error: one replicate, one band.
-ArrayLight array_light(int width, int height, double u_length_m, double v_length_m,
-                       std::span<const double> irradiance_W_m2);
-
 // A cell's active area in the grid's coordinates.
 struct CellRectangle {
   double u_low = 0, u_high = 0, v_low = 0, v_high = 0;
@@ -43,7 +35,7 @@ struct CellRectangle {
 // columns × rows equal rectangles, with `gap` between neighbours and `margin` around all, in units
 // of the grid's coordinates; row-major, as bins. Throws InputError if gaps and margins leave no
 // cell.
-std::vector<CellRectangle> cell_rectangles(const ArrayLight& light, int columns, int rows,
+std::vector<CellRectangle> cell_rectangles(const SurfaceGrid& grid, int columns, int rows,
                                            double gap, double margin);
 
 // A fraction of a bin's surface.
@@ -53,13 +45,12 @@ struct BinPart {
 };
 
 // The parts of a grid's bins in a rectangle.
-std::vector<BinPart> parts_of_rectangle(const CellRectangle& cell, const ArrayLight& light);
+std::vector<BinPart> parts_of_rectangle(const CellRectangle& cell, const SurfaceGrid& grid);
 
 // The bins that each cell covers, with the covered fraction of each. The light is assumed to be
 // uniform within a bin.
 class CellCover {
  public:
-  CellCover(const ArrayLight& light, std::span<const CellRectangle> cells);
   // One list of parts per cell.
   CellCover(const ArrayLight& light, std::span<const std::vector<BinPart>> cells);
 
@@ -69,8 +60,6 @@ class CellCover {
   std::vector<double> gather(std::span<const double> power_W) const;
 
  private:
-  void add(const ArrayLight& light, std::span<const BinPart> parts);
-
   size_t bands_;
   std::vector<BinPart> parts_;
   std::vector<size_t> first_;  // parts of cell i: first_[i] … first_[i + 1] − 1

@@ -139,11 +139,6 @@ std::pair<int, int> sort_lattice(std::vector<FoundCell>& cells) {
   return {columns, rows};
 }
 
-Vec2 from_bins(const SurfaceGrid& grid, const Vec2& bins) {
-  return {grid.u_low + bins.x() * (grid.u_high - grid.u_low) / grid.width,
-          grid.v_low + bins.y() * (grid.v_high - grid.v_low) / grid.height};
-}
-
 Vec2 read_corner(const Settings& rectangle, const char* key) {
   const std::vector<double> uv = rectangle.numbers(key);
   if (uv.size() != 2) {
@@ -192,22 +187,17 @@ CellPlaces places_from_mesh(const Scene& scene, const SurfaceGrid& grid) {
   CellPlaces places{{}, {}, columns, rows};
   for (FoundCell& cell : cells) {
     places.parts.push_back(std::move(cell.parts));
-    places.centres.push_back(from_bins(grid, cell.centre));
+    places.centres.emplace_back(
+        grid.u_low + cell.centre.x() * (grid.u_high - grid.u_low) / grid.width,
+        grid.v_low + cell.centre.y() * (grid.v_high - grid.v_low) / grid.height);
   }
   return places;
 }
 
 CellPlaces places_from_rectangles(std::span<const CellRectangle> cells, const SurfaceGrid& grid) {
   CellPlaces places{{}, {}, static_cast<int>(cells.size()), 1};
-  ArrayLight dimensions;
-  dimensions.width = grid.width;
-  dimensions.height = grid.height;
-  dimensions.u_low = grid.u_low;
-  dimensions.u_high = grid.u_high;
-  dimensions.v_low = grid.v_low;
-  dimensions.v_high = grid.v_high;
   for (const CellRectangle& cell : cells) {
-    places.parts.push_back(parts_of_rectangle(cell, dimensions));
+    places.parts.push_back(parts_of_rectangle(cell, grid));
     places.centres.emplace_back(std::midpoint(cell.u_low, cell.u_high),
                                 std::midpoint(cell.v_low, cell.v_high));
   }

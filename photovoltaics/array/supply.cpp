@@ -6,6 +6,14 @@
 namespace photorque {
 namespace {
 
+// Curves are computed at multiples of this temperature step and interpolated linearly, with an
+// error of 3e-5 of the power.
+constexpr double temperature_step_K = 5.0;
+
+// Fraction of the capacity by which the charge must move away from a limit before an event reports
+// it: a load near the power of the array fills the battery in every other step.
+constexpr double event_hysteresis = 0.01;
+
 // State of a first-order lag towards 1 (on) or 0 (off) after `elapsed_s`.
 double lagged(double from, bool on, double elapsed_s, double time_constant_s) {
   const double target = on ? 1.0 : 0.0;
@@ -33,58 +41,37 @@ LampOutput::LampOutput(const LampDroop& droop, const LampSchedule& schedule, dou
   stages_.push_back(stage);
 }
 
-double LampOutput::output(const Stage& stage, double time_s) const {
+double LampOutput::at(double time_s) const {
+  const auto after = std::ranges::upper_bound(stages_, time_s, {}, &Stage::from_s);
+  const Stage& stage = after == stages_.begin() ? stages_.front() : *(after - 1);
   if (!stage.on) return 0.0;
   const double elapsed_s = std::max(0.0, time_s - stage.from_s);
   return droop_.light(lagged(stage.faded, true, elapsed_s, droop_.time_constant_s),
                       lagged(stage.warm, true, elapsed_s, droop_.rise_time_constant_s));
 }
 
-double LampOutput::at(double time_s) const {
-  const auto after = std::ranges::upper_bound(stages_, time_s, {}, &Stage::from_s);
-  return output(after == stages_.begin() ? stages_.front() : *(after - 1), time_s);
-}
-
-namespace {
-
-// Curves are computed at multiples of this temperature step and interpolated linearly, with an
-// error of 3e-5 of the power.
-constexpr double temperature_step_K = 5.0;
-
-// Fraction of the capacity by which the charge must move away from a limit before an event reports
-// it: a load near the power of the array fills the battery in every other step.
-constexpr double event_hysteresis = 0.01;
-
-double lit(const std::vector<double>& photocurrent_A) {
-  return photocurrent_A.empty() ? 0.0 : *std::ranges::max_element(photocurrent_A);
-}
-
-}  // namespace
-
 // The array at one temperature, or between two.
 struct PowerSupply::Curves {
-  std::vector<ArrayCurve> curve;
-  std::vector<double> weight;
+  struct Weighted {
+    ArrayCurve curve;
+    double weight;
+  };
+  std::vector<Weighted> curves;
 
-  double open_circuit_V() const {
-    double sum = 0.0;
-    for (size_t i = 0; i < curve.size(); ++i) sum += weight[i] * curve[i].open_circuit_V();
-    return sum;
-  }
   // Above the open-circuit voltage, the diode of the converter blocks.
   double current_A(double voltage_V) const {
     double sum = 0.0;
-    for (size_t i = 0; i < curve.size(); ++i) {
-      if (voltage_V < curve[i].open_circuit_V()) sum += weight[i] * curve[i].current_A(voltage_V);
+    for (const auto& [curve, weight] : curves) {
+      if (voltage_V < curve.open_circuit_V()) sum += weight * curve.current_A(voltage_V);
     }
     return sum;
   }
   ArrayPoint best() const {
     double power_W = 0.0, voltage_V = 0.0;
-    for (size_t i = 0; i < curve.size(); ++i) {
-      const ArrayPoint point = curve[i].maximum_power();
-      power_W += weight[i] * point.power_W();
-      voltage_V += weight[i] * point.voltage_V;
+    for (const auto& [curve, weight] : curves) {
+      const ArrayPoint point = curve.maximum_power();
+      power_W += weight * point.power_W();
+      voltage_V += weight * point.voltage_V;
     }
     return {voltage_V, voltage_V > 0.0 ? power_W / voltage_V : 0.0};
   }
@@ -127,7 +114,7 @@ void PowerSupply::step(double time_s, double step_s, const Light& light, bool ju
   state_ = {};
   state_.light_W = light.on_cells_W;
   double potential_W = 0.0;
-  if (lit(light.photocurrent_A) > 0.0) {
+  if (std::ranges::any_of(light.photocurrent_A, [](double i_A) { return i_A > 0.0; })) {
     Curves curves;
     const auto add = [&](int index, double weight) {
       if (weight == 0.0) return;
@@ -135,8 +122,7 @@ void PowerSupply::step(double time_s, double step_s, const Light& light, bool ju
       const std::vector<double> current_A = index < 0 ? light.photocurrent_A
                                                       : warmed(design_.array, light.photocurrent_A,
                                                                design_.array.temperature_K, kelvin);
-      curves.curve.emplace_back(design_.array.wiring, tables_at(index), current_A);
-      curves.weight.push_back(weight);
+      curves.curves.push_back({{design_.array.wiring, tables_at(index), current_A}, weight});
     };
     if (plate_) {
       const double steps =

@@ -40,7 +40,6 @@ class LampOutput {
     bool on = true;
     double faded = 0.0, warm = 0.0;  // at from_s, fractions of the full effects
   };
-  double output(const Stage& stage, double time_s) const;
 
   LampDroop droop_;
   std::vector<double> switches_s_;

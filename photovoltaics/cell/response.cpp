@@ -56,44 +56,36 @@ double QuantumEfficiency::at(double wavelength) const {
   return std::lerp(efficiency[i - 1], efficiency[i], t);
 }
 
-QuantumEfficiency silicon_quantum_efficiency(double peak) {
-  struct Response {
-    double wavelength_nm, relative;
+QuantumEfficiency quantum_efficiency_of(std::string_view cell, std::optional<double> peak) {
+  struct Point {
+    double wavelength_nm, height;
   };
-  constexpr Response measured[] = {
+  static constexpr Point silicon_response[] = {
       {290, 0.00}, {350, 0.27},  {400, 0.37},  {500, 0.52},  {650, 0.71},  {800, 0.88}, {900, 0.97},
       {950, 1.00}, {1000, 0.93}, {1050, 0.58}, {1100, 0.21}, {1150, 0.05}, {1190, 0.00}};
-  double largest = 0.0;
-  for (const Response& r : measured) largest = std::max(largest, r.relative / r.wavelength_nm);
-  QuantumEfficiency table;
-  for (const Response& r : measured) {
-    table.wavelength_m.push_back(1e-9 * r.wavelength_nm);
-    table.efficiency.push_back(peak * r.relative / r.wavelength_nm / largest);
-  }
-  return table;
-}
-
-QuantumEfficiency quantum_efficiency_of(std::string_view cell, std::optional<double> peak) {
-  struct Shape {
-    double wavelength_nm, of_plateau;
-  };
-  const auto table = [](std::span<const Shape> shape, double plateau) {
-    QuantumEfficiency made;
-    for (const Shape& s : shape) {
-      made.wavelength_m.push_back(1e-9 * s.wavelength_nm);
-      made.efficiency.push_back(plateau * s.of_plateau);
-    }
-    return made;
-  };
-  static constexpr Shape gallium_arsenide[] = {{300, 0.2}, {350, 0.5},  {400, 0.8},  {450, 0.95},
+  static constexpr Point gallium_arsenide[] = {{300, 0.2}, {350, 0.5},  {400, 0.8},  {450, 0.95},
                                                {500, 1.0}, {850, 1.0},  {860, 0.98}, {868, 0.85},
                                                {876, 0.4}, {884, 0.08}, {900, 0.0}};
-  static constexpr Shape cadmium_telluride[] = {{300, 0.2}, {350, 0.5},  {400, 0.82}, {450, 0.92},
+  static constexpr Point cadmium_telluride[] = {{300, 0.2}, {350, 0.5},  {400, 0.82}, {450, 0.92},
                                                 {500, 1.0}, {850, 1.0},  {860, 0.97}, {870, 0.88},
                                                 {880, 0.6}, {890, 0.27}, {900, 0.08}, {920, 0.0}};
-  if (cell == "gallium_arsenide") return table(gallium_arsenide, peak.value_or(0.950));
-  if (cell == "cadmium_telluride") return table(cadmium_telluride, peak.value_or(0.949));
-  return silicon_quantum_efficiency(peak.value_or(silicon_peak));
+  QuantumEfficiency table;
+  const auto add = [&](const Point& point, double efficiency) {
+    table.wavelength_m.push_back(1e-9 * point.wavelength_nm);
+    table.efficiency.push_back(efficiency);
+  };
+  if (cell == "gallium_arsenide") {
+    for (const Point& p : gallium_arsenide) add(p, peak.value_or(0.950) * p.height);
+  } else if (cell == "cadmium_telluride") {
+    for (const Point& p : cadmium_telluride) add(p, peak.value_or(0.949) * p.height);
+  } else {
+    double largest = 0.0;
+    for (const Point& p : silicon_response) largest = std::max(largest, p.height / p.wavelength_nm);
+    for (const Point& p : silicon_response) {
+      add(p, peak.value_or(0.95) * p.height / p.wavelength_nm / largest);
+    }
+  }
+  return table;
 }
 
 double responsivity_A_W(const QuantumEfficiency& efficiency, double wavelength_m) {

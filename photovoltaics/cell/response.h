@@ -20,16 +20,14 @@ struct QuantumEfficiency {
   double at(double wavelength_m) const;
 };
 
-// Monocrystalline silicon. Shape: the spectral response of a measured cell, 13 points, from
-// A. Driesse, J. Stein, Global Normal Spectral Irradiance in Albuquerque (2020),
-// doi:10.2172/1814068, divided by wavelength. The measurement is relative; `peak` is the efficiency
-// at the best wavelength (800 nm), by default that of a textured cell with an antireflective coat
-// (assumed).
-inline constexpr double silicon_peak = 0.95;
-QuantumEfficiency silicon_quantum_efficiency(double peak = silicon_peak);
-
-// Quantum efficiency of the cell of that name among known_cells(): that of silicon, or for
-// "gallium_arsenide" and "cadmium_telluride" a plateau between the blue loss and the absorption
+// Quantum efficiency of the cell of that name among known_cells(). `peak`: its largest value.
+//
+// Silicon: the spectral response of a measured monocrystalline cell, 13 points, from A. Driesse, J.
+// Stein, Global Normal Spectral Irradiance in Albuquerque (2020), doi:10.2172/1814068, divided by
+// wavelength. The measurement is relative; at the best wavelength (800 nm) the efficiency is by
+// default 0.95, that of a textured cell with an antireflective coat (assumed).
+//
+// "gallium_arsenide" and "cadmium_telluride": a plateau between the blue loss and the absorption
 // edge. Its height, unless `peak` states it, gives the published current density in AM1.5G sunlight
 // of 1000 W/m²: 29.78 and 30.25 mA/cm² (M. A. Green et al., Solar cell efficiency tables (version
 // 54), Progress in Photovoltaics 27, 565 (2019)). The edges are those of alloys as published for

@@ -43,12 +43,13 @@ struct Task {
 
 // The circuit of a curve at its values (photocurrent, then shared), and d ln I₀/d gap.
 struct Circuit {
-  double photocurrent_A, saturation_A, scale_V, series_ohm, shunt_S;
+  double photocurrent_A;
+  DiodeCircuit diode;
   double saturation_by_gap_1_eV;
   double shunt_by_light, shunt_by_dark;  // d ln R_sh by the logarithms
 
-  CellCurve cell() const {
-    return CellCurve(single_diode(saturation_A, scale_V, series_ohm, 1.0 / shunt_S));
+  std::vector<DiodeCurrent> currents(const IvSweep& sweep) const {
+    return currents_of(diode, photocurrent_A, sweep);
   }
 };
 
@@ -59,13 +60,11 @@ Circuit circuit_of(const Task& task, Index run, const VectorXd& x) {
   const double by_gap = per_K * (1.0 / T0 - (1.0 + silicon_gap_slope_1_K * (T - T0)) / T);
   Circuit c{};
   c.photocurrent_A = std::exp(x[0]);
-  c.saturation_A = std::exp(s[saturation] + 3.0 * std::log(T / T0) + s[gap] * by_gap);
-  c.scale_V = std::exp(s[scale]) * T / T0;
-  c.series_ohm = std::exp(s[series]);
-  c.shunt_S = std::exp(s[shunt]);
+  c.diode = {std::exp(s[saturation] + 3.0 * std::log(T / T0) + s[gap] * by_gap),
+             std::exp(s[scale]) * T / T0, std::exp(s[series]), std::exp(s[shunt])};
   const double light = c.photocurrent_A / task.first_A;
   if (task.law == ShuntLaw::inverse) {
-    c.shunt_S *= light;
+    c.diode.shunt_S *= light;
     c.shunt_by_light = -1.0;
   } else if (task.law == ShuntLaw::exponential) {
     // R_sh relative to that of the first curve, by the law of in_light().
@@ -73,7 +72,7 @@ Circuit circuit_of(const Task& task, Index run, const VectorXd& x) {
     const double in_dark = std::exp(s[dark]), base = (1.0 - in_dark * full) / (1.0 - full);
     const double fallen = std::exp(-exponent * light);
     const double times = base + (in_dark - base) * fallen;
-    c.shunt_S /= times;
+    c.diode.shunt_S /= times;
     c.shunt_by_light = -exponent * light * (in_dark - base) * fallen / times;
     c.shunt_by_dark = in_dark * (fallen - full) / (1.0 - full) / times;
   }
@@ -81,30 +80,18 @@ Circuit circuit_of(const Task& task, Index run, const VectorXd& x) {
   return c;
 }
 
-struct Reading {
-  double current_A, slope_S;
-  Eigen::Matrix<double, 1, 1 + shared_count> by;
-};
-
-// The equation of point_of_curve() in fit.cpp: 0 = I_L − I₀ (e^{V_d/a} − 1) − G V_d − I with V_d =
-// V + I R_s.
-Reading reading_of(const Circuit& c, const CellCurve& cell, const IvSweep& sweep, size_t i) {
-  const double voltage_V = sweep.voltage_V[i];
-  const double light_A = c.photocurrent_A * (sweep.light.empty() ? 1.0 : sweep.light[i]);
-  const double current = cell.current_A(light_A, voltage_V);
-  const double diode_V = voltage_V + current * c.series_ohm;
-  const double growth = std::expm1(diode_V / c.scale_V);
-  const double junction_S = c.saturation_A * (growth + 1.0) / c.scale_V;
-  const double conductance = junction_S + c.shunt_S;
-  const double divisor = 1.0 + conductance * c.series_ohm;
-  const double leak_A = c.shunt_S * diode_V;
-  const double by_light = light_A + leak_A * c.shunt_by_light;
-  Reading r{current, conductance / divisor, {}};
-  r.by << by_light, -c.saturation_A * growth * c.saturation_by_gap_1_eV, -c.saturation_A * growth,
-      junction_S * diode_V, -conductance * current * c.series_ohm, -leak_A,
-      leak_A * c.shunt_by_dark;
-  r.by /= divisor;
-  return r;
+// The derivatives of a current by the values of its curve.
+Eigen::Matrix<double, 1, 1 + shared_count> derivatives_A(const Circuit& c,
+                                                         const DiodeCurrent& current) {
+  const auto& by = current.derivatives_A;
+  constexpr int by_light = 0, by_saturation = 1, by_scale = 2, by_series = 3, by_shunt = 4;
+  return {by[by_light] * c.photocurrent_A - by[by_shunt] * c.shunt_by_light,
+          by[by_saturation] * c.saturation_by_gap_1_eV,
+          by[by_saturation],
+          by[by_scale],
+          by[by_series],
+          by[by_shunt],
+          -by[by_shunt] * c.shunt_by_dark};
 }
 
 // The values of one curve: its photocurrent and the shared values.
@@ -119,14 +106,13 @@ void find_errors(Task& task, const VectorXd& at) {
   for (size_t k = 0; k < task.curves.size(); ++k) {
     const auto run = static_cast<Index>(k);
     const Circuit c = circuit_of(task, run, values_of(at, run));
-    const CellCurve cell = c.cell();
     const IvSweep& sweep = task.curves[k].sweep;
-    VectorXd error(static_cast<Index>(sweep.voltage_V.size()));
-    for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-      const Reading r = reading_of(c, cell, sweep, i);
+    const std::vector<DiodeCurrent> currents = c.currents(sweep);
+    VectorXd error(static_cast<Index>(currents.size()));
+    for (size_t i = 0; i < currents.size(); ++i) {
       error[static_cast<Index>(i)] =
-          std::hypot(task.noise.current_fraction * r.current_A,
-                     task.noise.voltage_fraction * sweep.voltage_V[i] * r.slope_S,
+          std::hypot(task.noise.current_fraction * currents[i].current_A,
+                     task.noise.voltage_fraction * sweep.voltage_V[i] * currents[i].slope_S,
                      std::max(1e-6 * task.noise.current_fraction, task.misfit) * c.photocurrent_A);
     }
     task.error_A.push_back(std::move(error));
@@ -140,15 +126,14 @@ inference::ResidualFunction residuals_of(const Task& task) {
     residuals = VectorXd::Constant(points, std::numeric_limits<double>::infinity());
     if (!reasonable(x)) return;
     const Circuit c = circuit_of(task, run, x);
-    if (!(c.saturation_A > 0.0) || !std::isfinite(c.saturation_A)) return;
-    const CellCurve cell = c.cell();
+    if (!(c.diode.saturation_A > 0.0) || !std::isfinite(c.diode.saturation_A)) return;
+    const std::vector<DiodeCurrent> currents = c.currents(sweep);
     if (slopes != nullptr) slopes->resize(points, x.size());
     const VectorXd& error = task.error_A[static_cast<size_t>(run)];
     for (Index i = 0; i < points; ++i) {
       const auto k = static_cast<size_t>(i);
-      const Reading r = reading_of(c, cell, sweep, k);
-      residuals[i] = (sweep.current_A[k] - r.current_A) / error[i];
-      if (slopes != nullptr) slopes->row(i) = r.by / error[i];
+      residuals[i] = (sweep.current_A[k] - currents[k].current_A) / error[i];
+      if (slopes != nullptr) slopes->row(i) = derivatives_A(c, currents[k]) / error[i];
     }
   };
 }
@@ -203,43 +188,21 @@ VectorXd start_of(const Task& task) {
 // Sum of the squared residuals of a curve, each relative to its photocurrent.
 double relative_squares(const Task& task, Index run, const VectorXd& at) {
   const Circuit c = circuit_of(task, run, values_of(at, run));
-  const CellCurve cell = c.cell();
   const IvSweep& sweep = task.curves[static_cast<size_t>(run)].sweep;
-  double sum = 0.0;
-  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-    const double off = sweep.current_A[i] - reading_of(c, cell, sweep, i).current_A;
-    sum += off * off;
-  }
-  return sum / (c.photocurrent_A * c.photocurrent_A);
-}
-
-// Distance of each reading from its curve, in units of its error.
-Deviations off_curves(const Task& task, const VectorXd& at) {
-  Deviations off;
-  for (size_t k = 0; k < task.curves.size(); ++k) {
-    const auto run = static_cast<Index>(k);
-    const Circuit c = circuit_of(task, run, values_of(at, run));
-    const CellCurve cell = c.cell();
-    const IvSweep& sweep = task.curves[k].sweep;
-    off.emplace_back();
-    for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-      const Reading r = reading_of(c, cell, sweep, i);
-      const double error_A =
-          std::hypot(task.noise.current_fraction * c.photocurrent_A,
-                     task.noise.voltage_fraction * sweep.voltage_V[i] * r.slope_S);
-      off.back().push_back(std::abs(sweep.current_A[i] - r.current_A) / error_A);
-    }
-  }
-  return off;
+  return squares_A2(sweep, c.currents(sweep)) / (c.photocurrent_A * c.photocurrent_A);
 }
 
 inference::Fit best_fit(Task& task, const VectorXd& start, std::vector<OutlierReading>& outliers) {
   std::vector<IvSweep*> sweeps;
   for (CurveAt& curve : task.curves) sweeps.push_back(&curve.sweep);
   const auto refit = [&](const VectorXd& at) { return fit_rounds(task, at, 4); };
-  const inference::Fit fit = refit_without_outliers(
-      refit(start), sweeps, [&](const VectorXd& at) { return off_curves(task, at); }, refit,
-      outliers);
+  const auto off_curve = [&](size_t k, const VectorXd& at) {
+    const auto run = static_cast<Index>(k);
+    const Circuit c = circuit_of(task, run, values_of(at, run));
+    return deviations(*sweeps[k], c.currents(*sweeps[k]), task.noise, c.photocurrent_A);
+  };
+  const inference::Fit fit =
+      refit_without_outliers(refit(start), sweeps, off_curve, refit, outliers);
   // Residuals far beyond the noise are errors of the model, which have one size at all voltages.
   constexpr double far = 3.0;
   task.variance = fit.variance();
@@ -348,7 +311,7 @@ ConditionsFit described(const Task& task, const inference::Fit& fit,
   result.shunt_law = task.law;
   const Circuit first = circuit_of(task, 0, values_of(at, 0));
   result.diode = diode_at(exponential(at[0], error[0]), s, e, saturation);
-  result.diode.shunt_ohm = {1.0 / first.shunt_S, e[shunt] / first.shunt_S};
+  result.diode.shunt_ohm = {1.0 / first.diode.shunt_S, e[shunt] / first.diode.shunt_S};
   result.model.reference = result.diode.parameters(task.reference_K);
   if (task.law != ShuntLaw::constant) {
     result.model.reference.shunt_light_A = first.photocurrent_A;

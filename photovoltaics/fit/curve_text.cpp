@@ -14,39 +14,15 @@ namespace photorque {
 namespace curve_text {
 namespace {
 
-std::vector<std::string_view> split(std::string_view line, char separator) {
-  if (separator != ' ') return cells_of(line, separator);
-  return words_of(line, " \t");
-}
-
-// The cells of a header. If blanks separate cells, a unit stays with its name: "Voltage (V)", "U /
-// V", "I in A".
-std::vector<std::string_view> split_header(std::string_view line, char separator) {
-  std::vector<std::string_view> cells;
-  if (separator != ' ') return split(line, separator);
-  bool joins = false;
-  for (const std::string_view word : split(line, separator)) {
-    const bool is_link = word == "/" || word == "in";
-    const bool is_inside = !cells.empty() &&
-                           cells.back().find_first_of("([") != cells.back().npos &&
-                           cells.back().find_first_of(")]") == cells.back().npos;
-    if (!cells.empty() &&
-        (joins || is_link || is_inside || word.starts_with('(') || word.starts_with('['))) {
-      const auto length = static_cast<size_t>(word.data() + word.size() - cells.back().data());
-      cells.back() = std::string_view(cells.back().data(), length);
-    } else {
-      cells.push_back(word);
-    }
-    joins = is_link;
-  }
-  return cells;
+std::vector<std::string_view> header_cells(std::string_view line, char separator) {
+  return separator == ' ' ? names_between_blanks(line) : cells_of(line, separator);
 }
 
 // Marks of a missing reading, also those of SCPI instruments for overflow and no number.
-bool is_missing(std::string_view cell) {
+bool is_missing(std::string_view cell, char separator) {
   constexpr std::string_view marks = "nan,na,n/a,inf,+inf,-inf,ol,-ol,overload,--,-,null";
-  if (cell.empty() || is_one_of(lower_case(cell), marks)) return true;
-  const auto value = number_in(cell);
+  if (cell.empty() || is_listed(lower_case(cell), marks)) return true;
+  const auto value = number_of_cell(cell, separator);
   return value && std::abs(*value) > 1e30;
 }
 
@@ -65,33 +41,24 @@ struct Header {
   // Columns beside the first one that only their units name.
   std::array<std::vector<Further>, columns> further;
   size_t cells = 0;
-  std::optional<size_t> reading, source;  // indices found by instrument_header()
+  bool is_of_instrument = false;  // found by instrument_header()
 };
-
-// The name of a column: the one that `columns` assigns to it, otherwise the cell itself.
-std::string_view known_as(std::string_view cell, const CurveColumns& columns) {
-  for (const auto& [name, written] : columns) {
-    if (written == cell) return name;
-  }
-  return cell;
-}
 
 // The buffer of a source-measure unit (Keithley 2450): "Reading" and "Source Value" or "Value" with
 // columns of their units, which the rows state.
 std::optional<Header> instrument_header(Header header, const std::vector<std::string_view>& cells) {
   std::optional<size_t> reading, source;
   for (size_t i = 0; i < cells.size(); ++i) {
-    const std::string name = lower_case(unquoted(cells[i]));
+    const std::string name = lower_case(cells[i]);
     if (!reading && name == "reading") reading = i;
     if (!source && (name == "source value" || name == "value" || name == "source")) source = i;
   }
   if (!reading || !source) return std::nullopt;
-  header.reading = reading;
-  header.source = source;
+  header.is_of_instrument = true;
   header.place[voltage] = source;
   header.place[current] = reading;
-  header.title[voltage] = unquoted(cells[*source]);
-  header.title[current] = unquoted(cells[*reading]);
+  header.title[voltage] = cells[*source];
+  header.title[current] = cells[*reading];
   return header;
 }
 
@@ -101,18 +68,18 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
   Header header;
   header.separator = separator_of(line);
   header.unit.fill({"", 1.0, 0.0});
-  const std::vector<std::string_view> cells = split_header(line, header.separator);
+  const std::vector<std::string_view> cells = header_cells(line, header.separator);
   header.cells = cells.size();
   std::array<Named::Match, columns> match{};
   for (size_t i = 0; i < cells.size(); ++i) {
-    const std::string_view known = known_as(unquoted(cells[i]), columns_named);
+    const std::string_view known = name_of_column(cells[i], columns_named);
     Named name = named(known);
     if (name.column == columns && by_unit) name = named_by_unit(known);
     if (name.column == columns) continue;
     const bool needed = name.column == voltage || name.column == current;
     if (!name.unknown_unit.empty()) {
       if (!needed || name.match != Named::plain) continue;
-      throw InputError(where, std::string(unquoted(cells[i])), "the unit " + name.unknown_unit,
+      throw InputError(where, std::string(cells[i]), "the unit " + name.unknown_unit,
                        name.column == voltage ? "V or mV" : "A, mA, µA or mA/cm²");
     }
     std::vector<Further>& further = header.further[name.column];
@@ -124,7 +91,7 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
       if (is_same && name.match == Named::by_unit) further.push_back({i, *name.unit});
       if (is_same && name.match != Named::plain) continue;
       if (is_same) {
-        throw InputError(where, std::string(unquoted(cells[i])), "a second column of this quantity",
+        throw InputError(where, std::string(cells[i]), "a second column of this quantity",
                          "one voltage and one current; one curve a file, or a column \"curve\"");
       }
     }
@@ -132,7 +99,7 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
     match[name.column] = name.match;
     header.place[name.column] = i;
     header.has_unit[name.column] = name.unit.has_value();
-    header.title[name.column] = unquoted(cells[i]);
+    header.title[name.column] = cells[i];
     header.unit[name.column] = name.unit.value_or(Unit{"", 1.0, 0.0});
   }
   if (!header.place[voltage] || !header.place[current]) return instrument_header(header, cells);
@@ -142,19 +109,19 @@ std::optional<Header> header_of(std::string_view line, const InputLocation& wher
 // Whether all columns of a header belong to a curve. A log of a motor, for example, has further
 // columns.
 bool is_of_curve(std::string_view line, const Header& header, bool by_unit) {
-  if (header.reading) return lower_case(line).find("unit") != line.npos;
+  if (header.is_of_instrument) return lower_case(line).find("unit") != line.npos;
   constexpr std::string_view beside =
       "power,p,leistung,puissance,potencia,potenza,time,zeit,temps,tiempo,tempo,date,index,point,"
       "no,nr,number,id,rep,/,in,watts,watt,run,direction,status,stat,res";
-  for (const std::string_view cell : split_header(line, header.separator)) {
-    std::string text = lower_case(unquoted(cell));
+  for (const std::string_view cell : header_cells(line, header.separator)) {
+    std::string text = lower_case(cell);
     // A dark curve beside the one in light is left out.
     if (text.empty() || text.find("dark") != text.npos || named(text).column != columns) continue;
     if (by_unit && named_by_unit(text).column != columns) continue;
     std::ranges::replace(text, '_', ' ');
     text = text.substr(0, text.find_first_of(" ([/.", 1));
     if (text.starts_with('[') || text.starts_with('(')) continue;
-    if (!is_one_of(text, beside)) return false;
+    if (!is_listed(text, beside)) return false;
   }
   return true;
 }
@@ -181,7 +148,7 @@ class Reader {
       : text_(text), lines_(text, file), file_(file), columns_named_(columns_named) {}
 
   CurveColumns named_columns() {
-    if (!find_header() || header_.reading) return {};
+    if (!find_header() || header_.is_of_instrument) return {};
     CurveColumns named;
     for (const Column column : {voltage, current}) {
       const Unit& unit = header_.unit[column];
@@ -205,9 +172,9 @@ class Reader {
     bool is_first = true;
     for (std::string_view line; lines_.next(line); is_first = false) {
       if (is_first) header_.separator = separator_of_rows(line);
-      const std::vector<std::string_view> cells = split(line, header_.separator);
+      const std::vector<std::string_view> cells = cells_of(line, header_.separator);
       if (is_first && states_units(cells)) continue;
-      if (is_first && header_.reading) assign_instrument(cells);
+      if (is_first && header_.is_of_instrument) assign_instrument(cells);
       read_row(cells, 0.0);
       if (header_.further[current].empty()) continue;
       const Header first = header_;
@@ -218,8 +185,7 @@ class Reader {
       }
       header_ = first;
     }
-    for (const Column column : {irradiance, temperature}) {
-      if (column != temperature || !header_.place[column] || header_.has_unit[column]) continue;
+    if (header_.place[temperature] && !header_.has_unit[temperature]) {
       throw InputError({file_}, "temperature", "a column without a unit",
                        "its unit in the header, K or °C");
     }
@@ -274,7 +240,7 @@ class Reader {
       if (further.empty() || (column == current && !header_.place[curve_number])) continue;
       std::string names = in_quotes(header_.title[column]);
       for (const Further& one : further) {
-        names += ", " + in_quotes(unquoted(split_header(line, header_.separator)[one.place]));
+        names += ", " + in_quotes(header_cells(line, header_.separator)[one.place]);
       }
       const bool is_voltage = column == voltage;
       throw InputError(lines_.where(), is_voltage ? "voltage" : "current", names,
@@ -312,9 +278,9 @@ class Reader {
 
   // The separator of the first row, which may differ from that of a header that was added by hand.
   char separator_of_rows(std::string_view row) const {
-    const size_t own = split(row, header_.separator).size();
+    const size_t own = cells_of(row, header_.separator).size();
     for (const char other : {'\t', ';', ' '}) {
-      const size_t cells = split(row, other).size();
+      const size_t cells = cells_of(row, other).size();
       if (own < header_.cells ? cells >= header_.cells
                               : own > header_.cells && cells == header_.cells) {
         return other;
@@ -327,7 +293,7 @@ class Reader {
   void assign_instrument(const std::vector<std::string_view>& cells) {
     const auto unit_after = [&](Column column) -> std::optional<Unit> {
       for (size_t i = *header_.place[column] + 1; i < cells.size(); ++i) {
-        const std::string unit = lower_case(unquoted(cells[i]));
+        const std::string unit = lower_case(cells[i]);
         if (unit_named(column == voltage ? current : voltage, unit)) return std::nullopt;
         if (const auto found = unit_named(column, unit)) return found;
       }
@@ -343,12 +309,12 @@ class Reader {
   bool states_units(const std::vector<std::string_view>& cells) {
     for (const Column column : {voltage, current}) {
       const size_t place = *header_.place[column];
-      if (place >= cells.size() || number_in(plain(cells[place]))) return false;
+      if (place >= cells.size() || number_of_cell(cells[place], header_.separator)) return false;
     }
     bool all = true;
     for (const Column column : {voltage, current, irradiance, temperature}) {
       if (!header_.place[column] || *header_.place[column] >= cells.size()) continue;
-      std::string text = lower_case(unquoted(cells[*header_.place[column]]));
+      std::string text = lower_case(cells[*header_.place[column]]);
       std::erase_if(text, [](char c) { return c == '(' || c == ')' || c == '[' || c == ']'; });
       const auto unit = unit_named(column, text);
       all = all && unit.has_value();
@@ -359,20 +325,11 @@ class Reader {
     return all;
   }
 
-  // The cell with a point in place of a decimal comma, unless commas separate the cells.
-  std::string plain(std::string_view cell) const {
-    std::string text(unquoted(cell));
-    const bool may_be_comma = header_.separator != ',';
-    if (may_be_comma && text.find('.') == std::string::npos) std::ranges::replace(text, ',', '.');
-    return text;
-  }
-
   std::optional<double> value(Column column, const std::vector<std::string_view>& cells) const {
     const size_t place = *header_.place[column];
-    const std::string cell = place < cells.size() ? plain(cells[place]) : "";
-    if (is_missing(cell)) return std::nullopt;
+    std::string_view text = place < cells.size() ? cells[place] : "";
+    if (is_missing(text, header_.separator)) return std::nullopt;
     Unit unit = header_.unit[column];
-    std::string_view text = cell;
     // A cell may contain its unit: "0.52 V".
     const size_t digits = text.find_last_of("0123456789.") + 1;
     if (digits > 0 && digits < text.size()) {
@@ -380,8 +337,10 @@ class Reader {
       if (stated) text = text.substr(0, digits);
       unit = stated.value_or(unit);
     }
-    const double number = require_number(text, lines_.where(), header_.title[column]);
-    return (number + unit.offset) * unit.to_SI;
+    const auto number = number_of_cell(text, header_.separator);
+    if (!number)
+      throw InputError(lines_.where(), header_.title[column], in_quotes(text), "a number");
+    return (*number + unit.offset) * unit.to_SI;
   }
 
   // Whether a row is below the readings ("End of data"): it has no voltage. If a reading follows
@@ -425,7 +384,7 @@ class Reader {
     // Times of day ("08:00") are ignored.
     std::optional<double> time_s;
     if (header_.place[time] && *header_.place[time] < cells.size()) {
-      time_s = number_in(plain(cells[*header_.place[time]]));
+      time_s = number_of_cell(cells[*header_.place[time]], header_.separator);
     }
     rows.of[time].push_back(time_s.value_or(NAN) * header_.unit[time].to_SI);
   }
@@ -563,12 +522,8 @@ bool is_curve_header(std::string_view line, const CurveColumns& columns) {
 }
 
 std::vector<std::string> curve_header_cells(std::string_view line) {
-  using namespace curve_text;
-  std::vector<std::string> cells;
-  for (const std::string_view cell : split_header(line, separator_of(line))) {
-    cells.emplace_back(unquoted(cell));
-  }
-  return cells;
+  const auto cells = curve_text::header_cells(line, separator_of(line));
+  return {cells.begin(), cells.end()};
 }
 
 }  // namespace photorque

@@ -67,7 +67,7 @@ bool is_qualifier(std::string_view word) {
   while (!word.empty() && std::isdigit(static_cast<unsigned char>(word.back()))) {
     word.remove_suffix(1);
   }
-  return word.empty() || is_one_of(word, known);
+  return word.empty() || is_listed(word, known);
 }
 
 // V, U, I or J with a qualifier before or behind it in one word: "vmod", "anodei".
@@ -100,7 +100,7 @@ Named qualified(const std::string& cell) {
     for (const auto& [column, list] : names) {
       const bool needed = column == voltage || column == current;
       const bool is_name =
-          is_one_of(word, list) || (stem.size() >= shortest && is_one_of(stem, list));
+          is_listed(word, list) || (stem.size() >= shortest && is_listed(stem, list));
       if (needed && is_name) of_word = column;
     }
     if (of_word == columns && is_qualifier(word)) continue;
@@ -156,10 +156,6 @@ Named named_without_brackets(std::string cell) {
 
 }  // namespace
 
-bool is_one_of(std::string_view text, std::string_view list) {
-  return std::ranges::count(cells_of(list), text) > 0;
-}
-
 std::optional<Unit> unit_named(Column column, std::string_view name) {
   const std::string written = of_area(name);
   for (const UnitNames& unit : units) {
@@ -202,7 +198,7 @@ Named named_by_unit(std::string_view header_cell) {
     if (std::isalpha(static_cast<unsigned char>(c)) == 0) c = ' ';
   }
   for (const std::string_view word : words_of(words)) {
-    if (is_one_of(word, excluded)) return {};
+    if (is_listed(word, excluded)) return {};
   }
   const bool has_bracket = cell.ends_with(')') || cell.ends_with(']');
   for (size_t i = 1; i < cell.size(); ++i) {

@@ -17,9 +17,6 @@ struct Unit {
 // The unit of a column by its name in small letters; empty if it is unknown.
 std::optional<Unit> unit_named(Column column, std::string_view name);
 
-// Whether a text is one of the words of a list in which commas separate them.
-bool is_one_of(std::string_view text, std::string_view list);
-
 // "Voltage (mV)" is a voltage in mV; "mA" a current; "V_meas", "Imod" and "SMU-1 Voltage" are
 // qualified names.
 struct Named {

@@ -19,62 +19,21 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 // both directions, τ of the charge storage.
 enum Parameter { light, saturation, scale, series, shunt, count, storage = count };
 
-CellCurve circuit(const VectorXd& x) {
-  return CellCurve(single_diode(std::exp(x[saturation]), std::exp(x[scale]), std::exp(x[series]),
-                                std::exp(-x[shunt])));
-}
-
-struct PointOfCurve {
-  double current_A;
-  double slope_S;  // −dI/dV
-  Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, count + 1> derivatives_A;
-};
-
-// I(V) of reading `i` of a sweep and its derivatives, from
-// 0 = I_L − I₀ (e^{V_d/a} − 1) − G V_d − τ g dV_d/dt − I, with V_d = V + I R_s, g = I₀ e^{V_d/a}/a
-// and dV_d/dt = dV/dt/(1 + (g + G) R_s).
-PointOfCurve point_of_curve(const CellCurve& cell, const VectorXd& x, const IvSweep& sweep,
-                            size_t i) {
-  const double a = std::exp(x[scale]), i0 = std::exp(x[saturation]);
-  const double rs = std::exp(x[series]), g = std::exp(x[shunt]);
-  const double voltage_V = sweep.voltage_V[i];
-  const double factor = sweep.light.empty() ? 1.0 : sweep.light[i];
-  const double light_A = x[light] * factor;
-  double current = cell.current_A(light_A, voltage_V);
-  double stored_A = 0.0, stored_A_s = 0.0;
-  if (x.size() > count) {
-    constexpr int most = 50;
-    for (int round = 0; round < most; ++round) {
-      const double junction_S = i0 * std::exp((voltage_V + current * rs) / a) / a;
-      stored_A_s = junction_S * sweep.rate_V_s[i] / (1.0 + (junction_S + g) * rs);
-      stored_A = x[storage] * stored_A_s;
-      const double before = current;
-      current = cell.current_A(light_A - stored_A, voltage_V);
-      if (std::abs(current - before) < 1e-13 * light_A) break;
-    }
-  }
-  const double diode_V = voltage_V + current * rs;
-  const double growth = std::expm1(diode_V / a);
-  const double junction_S = (i0 * (growth + 1.0) + stored_A) / a;
-  const double conductance = junction_S + g, divisor = 1.0 + conductance * rs;
-  PointOfCurve p{current, conductance / divisor, {}};
-  p.derivatives_A.resize(x.size());
-  p.derivatives_A.head(Index{count}) << factor, -i0 * growth - stored_A,
-      junction_S * diode_V + stored_A, -conductance * current * rs, -g * diode_V;
-  if (x.size() > count) p.derivatives_A[storage] = -stored_A_s;
-  p.derivatives_A /= divisor;
-  return p;
+std::vector<DiodeCurrent> currents(const IvSweep& sweep, const VectorXd& x) {
+  return currents_of(
+      {std::exp(x[saturation]), std::exp(x[scale]), std::exp(x[series]), std::exp(x[shunt])},
+      x[light], sweep, x.size() > count ? std::optional(x[storage]) : std::nullopt);
 }
 
 // The covariance of the currents of one sweep, at a fitted curve, as its Cholesky factor.
 MatrixXd covariance_root(const IvSweep& sweep, const SweepNoise& noise, const VectorXd& x) {
-  const CellCurve cell = circuit(x);
-  const auto points = static_cast<Index>(sweep.voltage_V.size());
+  const std::vector<DiodeCurrent> fitted = currents(sweep, x);
+  const auto points = static_cast<Index>(fitted.size());
   VectorXd from_light(points);
   MatrixXd covariance = MatrixXd::Zero(points, points);
   for (Index i = 0; i < points; ++i) {
     const double v = sweep.voltage_V[static_cast<size_t>(i)];
-    const PointOfCurve p = point_of_curve(cell, x, sweep, static_cast<size_t>(i));
+    const DiodeCurrent& p = fitted[static_cast<size_t>(i)];
     from_light[i] = noise.current_fraction * p.current_A;
     const double from_voltage_A = noise.voltage_fraction * v * p.slope_S;
     const double rounding_A = 1e-6 * noise.current_fraction * x[light];
@@ -111,14 +70,14 @@ inference::ResidualFunction whitened(std::span<const IvSweep> sweeps,
     residuals = VectorXd::Constant(points, std::numeric_limits<double>::infinity());
     if (!reasonable(x)) return;
     if (slopes != nullptr) slopes->resize(points, x.size());
-    const CellCurve cell = circuit(x);
     Index row = 0;
     for (size_t s = 0; s < sweeps.size(); ++s) {
       const Index first = row;
-      for (size_t i = 0; i < sweeps[s].voltage_V.size(); ++i, ++row) {
-        const PointOfCurve p = point_of_curve(cell, x, sweeps[s], i);
-        residuals[row] = sweeps[s].current_A[i] - p.current_A;
-        if (slopes != nullptr) slopes->row(row) = p.derivatives_A;
+      const double* measured_A = sweeps[s].current_A.data();
+      for (const DiodeCurrent& p : currents(sweeps[s], x)) {
+        residuals[row] = *measured_A++ - p.current_A;
+        if (slopes != nullptr) slopes->row(row) = p.derivatives_A.head(x.size());
+        ++row;
       }
       const auto root = roots[s].triangularView<Eigen::Lower>();
       root.solveInPlace(residuals.segment(first, row - first));
@@ -172,30 +131,11 @@ VectorXd start_from(const IvSweep& sweep, const SweepNoise& noise) {
   return best.at;
 }
 
-// Distance of each reading from the curve, in units of its error.
-Deviations off_curve(std::span<const IvSweep> sweeps, const SweepNoise& noise, const VectorXd& x) {
-  const CellCurve cell = circuit(x);
-  Deviations off(sweeps.size());
-  for (size_t s = 0; s < sweeps.size(); ++s) {
-    for (size_t i = 0; i < sweeps[s].voltage_V.size(); ++i) {
-      const double v = sweeps[s].voltage_V[i];
-      const PointOfCurve p = point_of_curve(cell, x, sweeps[s], i);
-      const double error_A =
-          std::hypot(noise.current_fraction * x[light], noise.voltage_fraction * v * p.slope_S);
-      off[s].push_back(std::abs(sweeps[s].current_A[i] - p.current_A) / error_A);
-    }
-  }
-  return off;
-}
-
 double rms_A(std::span<const IvSweep> sweeps, const VectorXd& x) {
-  const CellCurve cell = circuit(x);
   double squares = 0.0, points = 0.0;
   for (const IvSweep& sweep : sweeps) {
-    for (size_t i = 0; i < sweep.voltage_V.size(); ++i, ++points) {
-      const double apart = point_of_curve(cell, x, sweep, i).current_A - sweep.current_A[i];
-      squares += apart * apart;
-    }
+    squares += squares_A2(sweep, currents(sweep, x));
+    points += static_cast<double>(sweep.voltage_V.size());
   }
   return std::sqrt(squares / points);
 }
@@ -220,12 +160,11 @@ std::optional<ChargeStorage> storage_of(std::span<const IvSweep> sweeps,
   found.is_timed = sweeps[0].is_timed;
   constexpr double certain = 3.0;
   if (!(std::abs(found.time.value) > certain * found.time.standard_error)) return std::nullopt;
-  const CellCurve cell = circuit(fit.at);
-  const VectorXd steady = fit.at.head(Index{count});
   for (const IvSweep& sweep : sweeps) {
-    for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-      const double off_A = point_of_curve(cell, fit.at, sweep, i).current_A -
-                           point_of_curve(cell, steady, sweep, i).current_A;
+    const auto fitted = currents(sweep, fit.at),
+               steady = currents(sweep, fit.at.head(Index{count}));
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      const double off_A = fitted[i].current_A - steady[i].current_A;
       found.largest_A = std::max(found.largest_A, 2.0 * std::abs(off_A));
     }
   }
@@ -247,9 +186,11 @@ inference::Fit best_fit(std::vector<IvSweep>& sweeps, const SweepNoise& noise,
   };
   std::vector<IvSweep*> changed;
   for (IvSweep& sweep : sweeps) changed.push_back(&sweep);
+  const auto off_curve = [&](size_t sweep, const VectorXd& x) {
+    return deviations(sweeps[sweep], currents(sweeps[sweep], x), noise, x[light]);
+  };
   return refit_without_outliers(
-      fitted(), changed, [&](const VectorXd& at) { return off_curve(sweeps, noise, at); },
-      [&](const VectorXd&) { return fitted(); }, outliers);
+      fitted(), changed, off_curve, [&](const VectorXd&) { return fitted(); }, outliers);
 }
 
 }  // namespace

@@ -30,6 +30,58 @@ CellParameters SingleDiode::parameters(double temperature_K) const {
                       temperature_K);
 }
 
+std::vector<DiodeCurrent> currents_of(const DiodeCircuit& circuit, double light_A,
+                                      const IvSweep& sweep, std::optional<double> storage) {
+  const auto [i0, a, rs, g] = circuit;
+  const CellCurve cell(single_diode(i0, a, rs, 1.0 / g));
+  std::vector<DiodeCurrent> currents;
+  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+    const double voltage_V = sweep.voltage_V[i];
+    const double factor = sweep.light.empty() ? 1.0 : sweep.light[i];
+    double current = cell.current_A(light_A * factor, voltage_V);
+    double stored_A = 0.0, stored_A_s = 0.0;
+    constexpr int most = 50;
+    for (int round = 0; storage && round < most; ++round) {
+      const double junction_S = i0 * std::exp((voltage_V + current * rs) / a) / a;
+      stored_A_s = junction_S * sweep.rate_V_s[i] / (1.0 + (junction_S + g) * rs);
+      stored_A = *storage * stored_A_s;
+      const double before = current;
+      current = cell.current_A(light_A * factor - stored_A, voltage_V);
+      if (std::abs(current - before) < 1e-13 * light_A * factor) break;
+    }
+    const double diode_V = voltage_V + current * rs;
+    const double growth = std::expm1(diode_V / a);
+    const double junction_S = (i0 * (growth + 1.0) + stored_A) / a;
+    const double conductance = junction_S + g, divisor = 1.0 + conductance * rs;
+    DiodeCurrent& at = currents.emplace_back(DiodeCurrent{current, conductance / divisor, {}});
+    at.derivatives_A << factor, -i0 * growth - stored_A, junction_S * diode_V + stored_A,
+        -conductance * current * rs, -g * diode_V, -stored_A_s;
+    at.derivatives_A /= divisor;
+  }
+  return currents;
+}
+
+double squares_A2(const IvSweep& sweep, const std::vector<DiodeCurrent>& currents) {
+  double sum = 0.0;
+  for (size_t i = 0; i < currents.size(); ++i) {
+    const double off_A = sweep.current_A[i] - currents[i].current_A;
+    sum += off_A * off_A;
+  }
+  return sum;
+}
+
+std::vector<double> deviations(const IvSweep& sweep, const std::vector<DiodeCurrent>& currents,
+                               const SweepNoise& noise, double light_A) {
+  std::vector<double> off;
+  for (size_t i = 0; i < currents.size(); ++i) {
+    const double error_A =
+        std::hypot(noise.current_fraction * light_A,
+                   noise.voltage_fraction * sweep.voltage_V[i] * currents[i].slope_S);
+    off.push_back(std::abs(sweep.current_A[i] - currents[i].current_A) / error_A);
+  }
+  return off;
+}
+
 double gap_of_slope_eV(const CellModel& model, double light_A, double growth_1_K,
                        const CellFigure& figure, double slope_1_K) {
   constexpr double step_K = 10.0;
@@ -257,7 +309,7 @@ std::vector<NamedBound> resistance_bounds(Index series, Index shunt) {
 namespace {
 
 // One round of refit_without_outliers(): returns whether there were outliers.
-bool take_outliers(std::span<IvSweep* const> sweeps, const Deviations& off,
+bool take_outliers(std::span<IvSweep* const> sweeps, const std::vector<std::vector<double>>& off,
                    std::vector<OutlierReading>& taken) {
   constexpr double far = 8.0, most = 0.1;
   std::vector<double> all;
@@ -290,12 +342,15 @@ bool take_outliers(std::span<IvSweep* const> sweeps, const Deviations& off,
 
 }  // namespace
 
-inference::Fit refit_without_outliers(inference::Fit fit, std::span<IvSweep* const> sweeps,
-                                      const std::function<Deviations(const VectorXd&)>& off,
-                                      const std::function<inference::Fit(const VectorXd&)>& refit,
-                                      std::vector<OutlierReading>& taken) {
+inference::Fit refit_without_outliers(
+    inference::Fit fit, std::span<IvSweep* const> sweeps,
+    const std::function<std::vector<double>(size_t, const VectorXd&)>& off,
+    const std::function<inference::Fit(const VectorXd&)>& refit,
+    std::vector<OutlierReading>& taken) {
   for (int round = 0; round < 4 && std::isfinite(fit.chi2); ++round) {
-    if (!take_outliers(sweeps, off(fit.at), taken)) break;
+    std::vector<std::vector<double>> all;
+    for (size_t s = 0; s < sweeps.size(); ++s) all.push_back(off(s, fit.at));
+    if (!take_outliers(sweeps, all, taken)) break;
     for (const IvSweep* sweep : sweeps) check_sweep(*sweep);
     fit = refit(fit.at);
   }

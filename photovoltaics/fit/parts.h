@@ -24,6 +24,25 @@ constexpr double fit_temperature_K = 298.15;
 CellParameters single_diode(double saturation_A, double scale_V, double series_ohm,
                             double shunt_ohm, double temperature_K = fit_temperature_K);
 
+// The circuit of one diode, by its numbers.
+struct DiodeCircuit {
+  double saturation_A, scale_V, series_ohm, shunt_S;
+};
+// Current and slope of a lit diode at a reading, and the derivatives of the current.
+struct DiodeCurrent {
+  double current_A;
+  double slope_S;  // −dI/dV
+  // By the photocurrent, by the logarithms of I₀, a = n V_t, R_s and G = 1/R_sh, and by τ.
+  Eigen::Matrix<double, 1, 6> derivatives_A;
+};
+// The currents at the readings of a sweep, with the photocurrent `light_A` at light 1, from
+// 0 = I_L − I₀ (e^{V_d/a} − 1) − G V_d − τ g dV_d/dt − I, with V_d = V + I R_s, g = I₀ e^{V_d/a}/a
+// and dV_d/dt = dV/dt/(1 + (g + G) R_s). Without `storage`, τ is 0 and has no derivative.
+std::vector<DiodeCurrent> currents_of(const DiodeCircuit& circuit, double light_A,
+                                      const IvSweep& sweep, std::optional<double> storage = {});
+// Sum of the squared differences of the readings from such currents [A²].
+double squares_A2(const IvSweep& sweep, const std::vector<DiodeCurrent>& currents);
+
 // e^x with its error.
 inline Estimate exponential(double x, double error) {
   return {std::exp(x), std::exp(x) * error};
@@ -101,14 +120,16 @@ struct NamedBound {
 std::vector<BoundReached> bounds_reached(const inference::Fit& best,
                                          std::span<const NamedBound> named, Eigen::Index first = 0);
 
-// Deviation of each reading of some sweeps from its curve, in units of its error.
-using Deviations = std::vector<std::vector<double>>;
+// Deviation of each reading of a sweep from its curve, in units of its error. `light_A`: the
+// photocurrent.
+std::vector<double> deviations(const IvSweep& sweep, const std::vector<DiodeCurrent>& currents,
+                               const SweepNoise& noise, double light_A);
 // Moves readings that errors do not explain from the sweeps to `taken`, and refits, until there are
-// none. `off`: the deviations at a point of the fit. Many such readings, or more than two in a row,
-// are not accidental: then the curve is not that of a diode, and they are kept.
+// none. `off`: the deviations of a sweep at a point of the fit. Many such readings, or more than
+// two in a row, are not accidental: then the curve is not that of a diode, and they are kept.
 inference::Fit refit_without_outliers(
     inference::Fit fit, std::span<IvSweep* const> sweeps,
-    const std::function<Deviations(const Eigen::VectorXd& at)>& off,
+    const std::function<std::vector<double>(size_t sweep, const Eigen::VectorXd& at)>& off,
     const std::function<inference::Fit(const Eigen::VectorXd& start)>& refit,
     std::vector<OutlierReading>& taken);
 

@@ -115,8 +115,8 @@ inference::Fit fit_from(const VectorXd& start, const Figures& figures, double gu
     parameters[scale].sigma = 1.0;
   }
   const inference::ResidualModel model(
-      parameters,
-      inference::with_differences([&](const VectorXd& x) { return relative_errors(figures, x); }));
+      parameters, inference::with_differences(
+                      [&](const VectorXd& x, Index) { return relative_errors(figures, x); }));
   return inference::fit(model, start, inference::Options::to_rounding());
 }
 
@@ -288,7 +288,7 @@ void limit_by_figures(const inference::Fit& best, const Figures& figures,
   const std::span<const RatedPoint> points = figures.points;
   const VectorXd sigma = known_to(points, tolerance, std::sqrt(best.variance()));
   const inference::ResidualFunction residuals =
-      inference::with_differences([&](const VectorXd& x) -> VectorXd {
+      inference::with_differences([&](const VectorXd& x, Index) -> VectorXd {
         return relative_errors(figures, x).cwiseQuotient(sigma);
       });
   std::vector<inference::Parameter> parameters = parameters_from(best.at, points);

@@ -152,7 +152,7 @@ StringFit fitted_from(const VectorXd& start, const IvSweep& sweep, const SweepNo
                       const VectorXd& slopes_S) {
   const SweepEnds ends = sweep_ends(sweep);
   const inference::ResidualFunction residuals =
-      inference::with_differences([&sweep, noise, ends, slopes_S](const VectorXd& x) {
+      inference::with_differences([&sweep, noise, ends, slopes_S](const VectorXd& x, Index) {
         return weighted_errors(sweep, noise, ends.short_circuit_A, slopes_S, x);
       });
   const inference::ResidualModel model(parameters_from(start, ends), residuals);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "photovoltaics/cell/diode_voltage.h"
 #include "photovoltaics/network/wiring.h"
@@ -122,6 +123,17 @@ inline SlopeRange cell_range(const LitCell& cell, const JunctionState& high_v,
 // Extrapolates I(V) from a point of V(I) and its derivatives there, as the sum of a straight line
 // and an exponential, like a shunt and a diode. Correct to third order for any curve.
 double extrapolated_A(const ElementPoint& at, double current_A, double voltage_V);
+
+// Moves `end_A`, one end of a bracket, in steps that grow fourfold while `is_inside(end_A)`; the
+// other end follows. Shunts, breakdown and diodes limit currents to less than 1e6 A.
+template <class Predicate>
+void widen(double& other_A, double& end_A, double step_A, const Predicate& is_inside) {
+  constexpr double most_A = 1e6;
+  for (; std::abs(end_A) < most_A && is_inside(end_A); step_A *= 4.0) {
+    other_A = end_A;
+    end_A += step_A;
+  }
+}
 
 // For a junction: with u its voltage without R_s, the current is i = I_s (e^{u/nV_t} − 1) and its
 // conductance g = (i + I_s)/nV_t. Forward values are positive.

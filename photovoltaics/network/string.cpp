@@ -195,24 +195,16 @@ void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, doubl
                       close(excess)};
   };
   if (voltage_V < 0.0) {
-    // Upper limit of the current at negative voltages, through shunts, breakdown and diodes.
-    constexpr double most_A = 1e6;
     const double guess_A = state.current_A;
-    for (double step = 1e-3 * high_A + 1e-9; high_A < most_A && excess_V(high_A).value > 0.0;
-         step *= 4.0) {
-      low_A = high_A;
-      high_A += step;
-    }
+    widen(low_A, high_A, 1e-3 * high_A + 1e-9,
+          [&](double current_A) { return excess_V(current_A).value > 0.0; });
     state.current_A = guess_A;
   }
   if (voltage_V > open_circuit_V_ && low_A >= 0.0) {
     // The other strings drive a reverse current through this one.
-    double step = 1e-3 * largest_photocurrent_A_ + 1e-9;
     high_A = 0.0;
-    for (low_A = -step; excess_V(low_A).value < 0.0; step *= 4.0) {
-      high_A = low_A;
-      low_A -= step;
-    }
+    low_A = -(1e-3 * largest_photocurrent_A_ + 1e-9);
+    widen(high_A, low_A, low_A, [&](double current_A) { return excess_V(current_A).value < 0.0; });
   }
   const double root_A = falling_root(low_A, high_A, state.current_A, tolerance, excess_V);
   const double step_A = root_A - state.current_A;

@@ -273,19 +273,12 @@ double StringCurve::part_A(uint32_t index, double voltage_V, const StringRegime*
   const double guess_A =
       last.at.slope_ohm > 0.0 ? extrapolated_A(last.at, last.current_A, voltage_V) : part.light_A;
   double low = 0.0, high = part.largest_A;
-  constexpr double most_A = 1e6;
-  const double first_step = 1e-3 * part.largest_A + 1e-9;
+  const double step_A = 1e-3 * part.largest_A + 1e-9;
   if (voltage_V < 0.0) {
-    for (double step = first_step; high < most_A && excess_V(high).value > 0.0; step *= 4.0) {
-      low = high;
-      high += step;
-    }
+    widen(low, high, step_A, [&](double i_A) { return excess_V(i_A).value > 0.0; });
   }
   if (part.has_clamps || voltage_V > 0.9 * part.open_circuit_V) {
-    for (double step = first_step; low > -most_A && excess_V(low).value < 0.0; step *= 4.0) {
-      high = low;
-      low -= step;
-    }
+    widen(high, low, -step_A, [&](double i_A) { return excess_V(i_A).value < 0.0; });
   }
   return falling_root(low, high, guess_A, 1e-9, excess_V);
 }
@@ -296,12 +289,8 @@ double StringCurve::inside_A(uint32_t index, double drop_V, StringState& state) 
     const double excess = p.voltage_V + drop_V;
     return FunctionAt{excess, -p.slope_ohm, p.curvature_V_A2, p.third_V_A3, close(excess)};
   };
-  double low = 0.0, high = parts_[index].largest_A, step = 1e-3 * high + 1e-9;
-  while (excess_V(high).value > 0.0) {
-    low = high;
-    high += step;
-    step *= 4.0;
-  }
+  double low = 0.0, high = parts_[index].largest_A;
+  widen(low, high, 1e-3 * high + 1e-9, [&](double i_A) { return excess_V(i_A).value > 0.0; });
   return falling_root(low, high, std::midpoint(low, high), 1e-9, excess_V);
 }
 

@@ -5,14 +5,11 @@
 
 namespace photorque::python {
 
-void bind_light(pybind11::module_& module);      // trace, power
-void bind_render(pybind11::module_& module);     // render
+void bind_light(pybind11::module_& module);      // trace, power, render, fit_cell
 void bind_wrenches(pybind11::module_& module);   // torque_map
 void bind_motion(pybind11::module_& module);     // propagate
 void bind_platform(pybind11::module_& module);   // budget, balance
 void bind_diagnosis(pybind11::module_& module);  // diagnose
-void bind_check(pybind11::module_& module);      // check
-void bind_cell_fit(pybind11::module_& module);   // fit_cell
 void bind_tracking(pybind11::module_& module);   // camera, estimate
 
 }  // namespace photorque::python

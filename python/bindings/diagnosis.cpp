@@ -89,7 +89,7 @@ void bind_diagnosis(py::module_& module) {
           py::arg("folder") = ".", "The improved experiment as TOML text.")
       .def_property_readonly(
           "report_html", [](const DiagnosisHandle& run) { return run.report(); },
-          "A page with charts.")
+          "HTML text of the report with charts, without script.")
       .def(
           "write_page",
           [](const DiagnosisHandle& run, const std::filesystem::path& path) {
@@ -100,7 +100,8 @@ void bind_diagnosis(py::module_& module) {
             return path.string();
           },
           py::arg("path"),
-          "Measured and simulated platform together, as one HTML page; gives its path.")
+          "Writes the interactive report (measured and simulated platform) as one HTML page; "
+          "returns its path.")
       .def(
           "write",
           [](const DiagnosisHandle& run, const std::filesystem::path& folder) {

@@ -4,7 +4,9 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "core/errors.h"
+#include "python/bindings/call.h"
 #include "scenes/experiment/document.h"
+#include "tools/verbs/check.h"
 
 namespace photorque::python {
 namespace {
@@ -109,6 +111,11 @@ ExperimentHandle make(const py::object& source, const py::dict& keys,
   return changed(std::move(experiment), keys);
 }
 
+CheckReport check_of(const ExperimentHandle& experiment) {
+  const Call call(experiment.options.experiment, py::none(), py::none());
+  return call.run([&] { return run_check(experiment.options); });
+}
+
 }  // namespace
 
 std::string text_of(const py::handle& text, const std::string& key, const std::string& expected) {
@@ -169,6 +176,30 @@ void bind_experiment(py::module_& module) {
                     ? ")"
                     : ", " + std::to_string(self.options.overrides.size()) + " keys changed)");
       });
+  py::class_<CheckReport>(module, "CheckReport",
+                          "Errors of an experiment, and the commands that can run with it.")
+      .def_property_readonly(
+          "commands",
+          [](const CheckReport& report) {
+            py::dict commands;
+            for (const CheckReport::Command& one : report.commands) {
+              commands[py::str(one.name)] = one.what;
+            }
+            return commands;
+          },
+          "Description of each command that can run, by its name.")
+      .def_property_readonly(
+          "mistakes",
+          [](const CheckReport& report) {
+            py::list lines;
+            for (const InputError& mistake : report.mistakes) lines.append(mistake.what());
+            return lines;
+          },
+          "The first error of every table of the experiment, one line each.")
+      .def_readonly("notes", &CheckReport::notes, "Assumptions of the readers, one line each.");
+  module.def("check", &check_of, py::arg("experiment"),
+             "Reads the experiment and reports its errors and the commands that can run, without "
+             "running one.");
 }
 
 }  // namespace photorque::python

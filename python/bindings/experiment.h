@@ -22,6 +22,7 @@ struct ExperimentHandle {
 // A name or text as UTF-8. InputError with the key if the value is something else.
 std::string text_of(const py::handle& text, const std::string& key, const std::string& expected);
 
+// The class Experiment, and check(), which validates one without a run.
 void bind_experiment(py::module_& module);
 
 }  // namespace photorque::python

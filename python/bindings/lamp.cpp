@@ -230,15 +230,15 @@ LampHandle make_lamp(const py::function& emit, double power_W, double wavelength
 void bind_lamp(py::module_& module) {
   py::class_<LampHandle>(
       module, "Lamp",
-      "A lamp to try out, whose rays a Python function gives.\n\n"
-      "emit(points): points of shape (n, 4), even in (0, 1)⁴, become (origin_m, direction), both "
-      "(n, 3), in the lamp's own axes: z along its beam, origin at its place; x along lab x and y "
-      "along lab −y if the beam points straight down, and rotated by the shortest rotation from "
-      "there for any other beam. Each ray carries an "
-      "equal part of power_W. It must depend on nothing but its points, and neighbouring points "
-      "should give neighbouring rays: the first two choose the place, the others the direction. "
-      "Slow: every 256 rays take the interpreter's lock; a lamp that stays belongs into the "
-      "catalogue.")
+      "A lamp whose rays are computed by a Python function.\n\n"
+      "emit(points) maps points of shape (n, 4), uniform in (0, 1)⁴, to (origin_m, direction), "
+      "both (n, 3), in the axes of the lamp: z is along the beam, the origin is the position of "
+      "the "
+      "lamp. If the beam points straight down, x is along lab x and y along lab −y; any other beam "
+      "is rotated from there by the shortest rotation. Each ray carries an equal part of power_W. "
+      "The result must depend only on the points, and neighbouring points should give neighbouring "
+      "rays: the first two numbers select the position, the others the direction. Such a lamp is "
+      "slow, because every 256 rays acquire the lock of the interpreter.")
       .def(py::init(&make_lamp), py::arg("emit"), py::kw_only(), py::arg("power_W"),
            py::arg("wavelength_nm"), py::arg("position_m"), py::arg("direction") = py::none(),
            py::arg("aim_m") = py::none(), py::arg("spectral_fwhm_nm") = 0.0,

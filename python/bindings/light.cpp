@@ -1,5 +1,8 @@
-// trace() and power(): irradiance, radiation force and torque, solar-array power.
+// trace(), power(), render() and fit_cell(): irradiance, radiation force and torque, solar-array
+// power, pictures, parameters of cells.
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include "python/bindings/arrays.h"
 #include "python/bindings/bind.h"
@@ -8,7 +11,9 @@
 #include "python/bindings/lamp.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
+#include "tools/verbs/fit_cell.h"
 #include "tools/verbs/power.h"
+#include "tools/verbs/render.h"
 #include "tools/verbs/trace.h"
 
 namespace photorque::python {
@@ -30,7 +35,7 @@ struct LightHandle {
       if (!receiver.flux_map) continue;
       flux_maps.emplace_back(receiver.name, receiver.flux_map->flux_map(light.sums[i]));
     }
-    wrench = wrench_about(run->wrench().total(light.sums[run->wrench_index()]), Vec3::Zero());
+    wrench = run->wrench_of(light);
   }
 };
 
@@ -99,7 +104,7 @@ void bind_flux_map(py::module_& module) {
             return view(grid.area_m2, static_cast<size_t>(grid.height),
                         static_cast<size_t>(grid.width), self);
           },
-          "Area of surface in every bin.")
+          "Area of the surface in every bin [m²].")
       .def_property_readonly(
           "extent",
           [](const FluxMap& map) {
@@ -183,11 +188,62 @@ void bind_runs(py::module_& module) {
           "Voltage of each cell at the maximum power point [V], shape (rows, columns).");
 }
 
+py::array pixels_of(const py::object& self) {
+  const Picture& picture = self.cast<const RenderRun&>().picture;
+  const py::ssize_t width = picture.width;
+  py::array array(py::dtype::of<uint8_t>(), {py::ssize_t{picture.height}, width, py::ssize_t{3}},
+                  {3 * width, py::ssize_t{3}, py::ssize_t{1}}, picture.rgb.data(), self);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+void bind_render(py::module_& module) {
+  py::class_<RenderRun>(module, "Render",
+                        "A picture of the scene with the irradiance on its receivers.")
+      .def_property_readonly("pixels", &pixels_of,
+                             "Red, green, blue (rows from the top, columns, 3), 0 to 255, sRGB: "
+                             "for matplotlib's imshow.")
+      .def_property_readonly(
+          "title", [](const RenderRun& run) { return run.title; }, "Title of the picture.")
+      .def_property_readonly(
+          "provenance", [](const RenderRun& run) { return provenance_of(run.provenance); },
+          "Version, git hash, seed and the hashes of all inputs.")
+      .def(
+          "write",
+          [](const RenderRun& self, const std::filesystem::path& folder) {
+            const py::gil_scoped_release release;
+            return write_render(self, folder).string();
+          },
+          py::arg("folder"), "Writes render.png and returns its path.");
+  def_traced(module, "render", &run_render,
+             "Traces the experiment and returns a picture of the scene, seen from [camera].");
+}
+
+struct CellFit {
+  RunResult result;
+};
+
+CellFit fit_cell(const ExperimentHandle& experiment, const py::object& log) {
+  const Call call(experiment.options.experiment, py::none(), log);
+  return call.run([&] { return CellFit{run_fit_cell(experiment.options, call.console())}; });
+}
+
+void bind_cell_fit(py::module_& module) {
+  auto type = py::class_<CellFit>(module, "CellFit",
+                                  "Fitted parameters of a cell, with standard errors, as figures.");
+  add_result(type, "fit-cell");
+  module.def("fit_cell", &fit_cell, py::arg("experiment"), py::kw_only(),
+             py::arg("log") = py::none(),
+             "Solar cell parameters from the current-voltage sweeps or datasheet of [fit].");
+}
+
 }  // namespace
 
 void bind_light(py::module_& module) {
   bind_flux_map(module);
   bind_runs(module);
+  bind_render(module);
+  bind_cell_fit(module);
   def_traced(module, "trace", &trace,
              "Irradiance on every receiver, power balance, radiation force and torque.");
   def_traced(module, "power", &power,

@@ -55,16 +55,17 @@ void bind_budget(py::module_& module) {
 void bind_platform(py::module_& module) {
   bind_budget(module);
   auto type =
-      py::class_<BalanceOutcome>(module, "Balance", "The centre of mass that a recording shows.");
+      py::class_<BalanceOutcome>(module, "Balance", "Centre of mass, fitted to a recording.");
   add_result(type, "balance");
   type.def_property_readonly(
           "offset_body_m",
           [](const BalanceOutcome& self) { return copy_of(self.balance.offset_body_m); },
-          "Centre of mass from the centre of rotation, body axes.")
+          "Centre of mass relative to the centre of rotation, body axes [m], shape (3,).")
       .def_property_readonly(
           "standard_error_m",
           [](const BalanceOutcome& self) { return copy_of(self.balance.sigma_m); },
-          "Infinite along an axis that the recording does not determine.");
+          "Standard error of offset_body_m [m], shape (3,); infinite along an axis that the "
+          "recording does not determine.");
   module.def("balance", &balance_of, py::arg("experiment"), py::arg("recording"),
              "The centre of mass from a recording, and the displacements of the balancing masses.");
 }

@@ -36,7 +36,7 @@ py::object column_called(const py::object& self, const std::string& name) {
 
 void bind_table(py::module_& module) {
   py::class_<Table>(module, "Table",
-                    "Columns of equal length, by name; the unit is the name's end.")
+                    "Columns of equal length, by name; each name ends with the unit.")
       .def_readonly("name", &Table::name, "Name of the table; that of its file without extension.")
       .def_readonly("title", &Table::title, "Title of the table.")
       .def("keys", [](const py::object& self) { return py::list(columns_of(self)); })
@@ -76,7 +76,7 @@ void bind_map(py::module_& module) {
       .def_readonly("y_label", &Map::y_label, "Label of the y axis with its unit.")
       .def_property_readonly(
           "value", [](const py::object& self) { return map_view(self, &Map::value); },
-          "Row by row, y and x rising.")
+          "Values of shape (rows, columns): rows along increasing y, columns along increasing x.")
       .def_property_readonly(
           "standard_error",
           [](const py::object& self) -> py::object {
@@ -105,7 +105,7 @@ void bind_map(py::module_& module) {
           [](const py::object& self) {
             return py::module_::import("photorque.plots").attr("map_to_xarray")(self);
           },
-          "As an xarray Dataset: value and standard_error over the middles of the bins.");
+          "The map as an xarray.Dataset: value and standard_error at the centres of the bins.");
 }
 
 const char* style_of(const Plot::Curve& curve) {

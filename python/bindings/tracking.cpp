@@ -70,12 +70,14 @@ void bind_tracking(py::module_& module) {
   auto camera = py::class_<CameraRun>(
       module, "Camera", "Attitude error of a camera that tracks markers: tables and maps.");
   add_result(camera, "camera");
-  camera.def_readonly("images_per_s", &CameraRun::images_per_s,
-                      "Images exposed, read and solved in a second on one thread.");
+  camera.def_readonly(
+      "images_per_s", &CameraRun::images_per_s,
+      "Simulated images per second on one thread, including the estimate of the pose.");
   module.def("camera", &study_camera, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,
              py::arg("progress") = py::none(), py::arg("log") = py::none(),
-             "The tracking camera of [sensors.camera] by its geometry: the error of one image over "
-             "tilt, lens and board, and simulated images against the prediction.");
+             "Attitude error of the camera in [sensors.camera] over tilt, lens and board, and the "
+             "errors of "
+             "simulated images compared with it.");
 
   auto estimate = py::class_<EstimateRun>(
       module, "AttitudeEstimate", "Attitude and rate by filter and smoother, of each recording.");
@@ -114,7 +116,7 @@ void bind_tracking(py::module_& module) {
       py::arg("truth") = py::none(), py::arg("threads") = 0, py::arg("seed") = py::none(),
       py::arg("progress") = py::none(), py::arg("log") = py::none(),
       "Attitude and rate by Kalman filter and smoother of recordings or, without any, of simulated "
-      "runs. `truth`: a file with what is known of a single recording's motion.");
+      "runs. `truth`: CSV file with the true motion of a single recording, for comparison.");
 }
 
 }  // namespace photorque::python

@@ -23,9 +23,9 @@ TorqueMapHandle torque_map(const ExperimentHandle& experiment, int threads, cons
   const Call call(options.experiment, progress, log);
   add_lamps(options, lamps, call);
   return call.run([&] {
-    TorqueMapStage stage;
+    SceneStage stage;
     TorqueMapHandle handle{
-        run_torque_map(options, call.console(), page ? stage.watch() : NodeWatch())};
+        run_torque_map(options, call.console(), page ? add_to(stage) : NodeWatch())};
     if (page) {
       handle.page = torque_map_page(*handle.run, handle.wrenches, handle.result, std::move(stage),
                                     head_of(options, "torque-map"));
@@ -95,9 +95,10 @@ void bind_wrenches(py::module_& module) {
       .def_property_readonly("torque_standard_error_N_m", node_view(&WrenchTable::torque_error_N_m),
                              "Standard error of torque_body_N_m [N m].")
       .def("at", &wrench_between, py::arg("polar_rad"), py::arg("around_rad"),
-           "(force, torque) between the nodes, bilinear. NumericalError outside the grid.")
+           "(force [N], torque [N m]) by bilinear interpolation, body axes. Raises NumericalError "
+           "outside the grid.")
       .def("write_page", &write_page, py::arg("path"),
-           "The run as one HTML page with sliders over the attitudes; gives its path. Of runs with "
+           "Writes one HTML page with sliders over the attitudes; returns its path. Requires "
            "page=True.");
   module.def("torque_map", &torque_map, py::arg("experiment"), py::kw_only(),
              py::arg("threads") = 0, py::arg("seed") = py::none(), py::arg("lamps") = py::list(),

@@ -1,8 +1,8 @@
-"""Light, torque and attitude of free-floating platforms.
+"""Irradiance, solar-array power, radiation torque and attitude of free-floating platforms.
 
-An Experiment is a TOML file or a dict with the same keys. Functions named like the program's commands run
-it and return NumPy arrays that are views of the library's numbers. Names contain units; values have standard
-errors. Wrong input raises InputError with one line; a computation that fails raises NumericalError.
+An Experiment is a TOML file or a dict with the same keys. Each function runs the command of the same name and
+returns NumPy arrays, which are read-only views of the results. Figures have standard errors, and names end with
+the unit. Wrong input raises InputError with a message of one line; a failed computation raises NumericalError.
 """
 
 from photorque._photorque import *  # noqa: F403

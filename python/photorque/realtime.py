@@ -56,11 +56,6 @@ class Measurement:
     sequence: int
     sent_ns: int
 
-    @property
-    def heading_rad(self) -> float:
-        """Earlier name of yaw_rad."""
-        return self.yaw_rad
-
 
 def seal(kind: int, sequence: int, tick: int, run: int, body: bytes = b"") -> bytes:
     """A packet with its checksum."""
@@ -90,28 +85,6 @@ def unseal(packet: bytes) -> tuple[int, Measurement] | None:
         refused=v[26], sequence=sequence, sent_ns=sent_ns)
 
 
-class _Udp:
-    def __init__(self, address: str, port: int) -> None:
-        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.connect((address, port))
-
-    def send(self, packet: bytes) -> None:
-        try:
-            self.socket.send(packet)
-        except ConnectionRefusedError:
-            pass  # no server is listening
-
-    def receive(self, timeout_s: float) -> bytes | None:
-        self.socket.settimeout(timeout_s)
-        try:
-            return self.socket.recv(2048)
-        except (TimeoutError, ConnectionRefusedError):
-            return None
-
-    def close(self) -> None:
-        self.socket.close()
-
-
 class Client:
     """Connects to a run."""
 
@@ -121,7 +94,8 @@ class Client:
         port: int = 4160,
         timeout_s: float = 10.0,
     ) -> None:
-        self._way: _Udp | None = _Udp(address, port)
+        self._socket: socket.socket | None = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.connect((address, port))
         self._timeout_s = timeout_s
         self._sequence = 0
         self._run = 0
@@ -129,15 +103,21 @@ class Client:
         self._last_sequence = 0
         self._last_command: bytes | None = None
 
-    def _open(self) -> _Udp:
-        if self._way is None:
+    def _open(self) -> socket.socket:
+        if self._socket is None:
             raise ValueError("the client is closed")
-        return self._way
+        return self._socket
+
+    def _put(self, packet: bytes) -> None:
+        try:
+            self._open().send(packet)
+        except ConnectionRefusedError:
+            pass  # no server is listening
 
     def _send(self, kind: int, body: bytes = b"") -> bytes:
         self._sequence += 1
         packet = seal(kind, self._sequence, self._tick, self._run, body)
-        self._open().send(packet)
+        self._put(packet)
         return packet
 
     def receive(self) -> Measurement | None:
@@ -146,15 +126,18 @@ class Client:
         while time.monotonic() < end:
             if self._run == 0:
                 self._send(HELLO)
-            packet = self._open().receive(min(0.2, self._timeout_s))
-            found = unseal(packet) if packet else None
+            self._open().settimeout(min(0.2, self._timeout_s))
+            try:
+                found = unseal(self._open().recv(2048))
+            except (TimeoutError, ConnectionRefusedError):
+                continue
             if not found or (self._run and found[0] != self._run):
                 continue
             self._run, measurement = found
             if measurement.sequence <= self._last_sequence:
                 # Repeated in lockstep, perhaps because the answer was lost.
                 if measurement.sequence == self._last_sequence and self._last_command:
-                    self._open().send(self._last_command)
+                    self._put(self._last_command)
                 continue
             self._last_sequence = measurement.sequence
             self._last_command = None
@@ -170,17 +153,17 @@ class Client:
             yield measurement
 
     def command(self, torque_body_N_m: Sequence[float]) -> None:
-        """Sets the torque about the body axes from now on [N m]."""
+        """Sets the torque about the body axes [N m], which acts until the next command."""
         self._last_command = self._send(COMMAND, _COMMAND.pack(*torque_body_N_m))
 
     def close(self) -> None:
         """Leaves the run, which continues without commands."""
-        if self._way is None:
+        if self._socket is None:
             return
         if self._run:
             self._send(GOODBYE)
-        self._way.close()
-        self._way = None
+        self._socket.close()
+        self._socket = None
 
     def __enter__(self) -> "Client":
         return self

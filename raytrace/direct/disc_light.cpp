@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/constants.h"
+#include "core/numerics/divide_convex.h"
 #include "core/numerics/quadrature.h"
 
 namespace photorque {
@@ -319,13 +320,11 @@ Integral<double> DiscLight::power_through_W(std::span<const Vec3> polygon_m,
                                             double tolerance_W) const {
   // The light exists only in front of the aperture's plane, so the polygon is clipped there.
   std::vector<Vec3> corners;
-  for (size_t i = 0; i < polygon_m.size(); ++i) {
-    const Vec3 &from = polygon_m[i], &to = polygon_m[(i + 1) % polygon_m.size()];
-    if (from.z() >= lowest_m()) corners.push_back(from);
-    if ((from.z() >= lowest_m()) != (to.z() >= lowest_m())) {
-      corners.push_back(from + (lowest_m() - from.z()) / (to.z() - from.z()) * (to - from));
-    }
-  }
+  divide_convex(
+      polygon_m, [&](const Vec3& at) { return at.z() - lowest_m(); },
+      [&](const Vec3& at, double side) {
+        if (side >= 0.0) corners.push_back(at);
+      });
   Integral<double> sum{0.0, 0.0};
   double twice_area_m2 = 0.0;
   for (size_t i = 0; i < corners.size(); ++i) {

@@ -7,6 +7,10 @@
 
 namespace photorque {
 
+bool any_positive(const BandValues& fractions) {
+  return std::ranges::any_of(fractions, [](double fraction) { return fraction > 0.0; });
+}
+
 OpticalSurface grey_surface(std::string name, double specular, double diffuse, double transmitted) {
   OpticalSurface surface;
   surface.name = std::move(name);

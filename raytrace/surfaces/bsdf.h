@@ -38,6 +38,9 @@ struct OpticalSurface {
   std::shared_ptr<const Bsdf> bsdf = nullptr;
 };
 
+// Whether a fraction is positive in some band.
+bool any_positive(const BandValues& fractions);
+
 // A surface with equal fractions in all bands; the remainder is absorbed. The sum of the fractions
 // must be ≤ 1.
 OpticalSurface grey_surface(std::string name, double specular, double diffuse,

@@ -6,15 +6,6 @@
 #include "core/numerics/quadrature.h"
 
 namespace photorque {
-namespace {
-
-void add(Ggx::Moments& sum, const Vec3& out, double power) {
-  sum[0] += power;
-  sum[1] += power * out.x();
-  sum[2] += power * out.z();
-}
-
-}  // namespace
 
 Vec3 direction_at(double cosine) {
   return {std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), 0.0, cosine};
@@ -76,8 +67,11 @@ Ggx::Moments Ggx::moments(double cosine, const std::function<double(double)>& of
         const Vec3 normal = visible_normal(in, radius * radius, turn);
         const double facing = in.dot(normal);
         const Vec3 out = 2.0 * facing * normal - in;
-        add(sum, out,
-            weight * width * radius / angles * leaves(cosine, out.z()) * of_facet(facing));
+        const double power =
+            weight * width * radius / angles * leaves(cosine, out.z()) * of_facet(facing);
+        sum[0] += power;
+        sum[1] += power * out.x();
+        sum[2] += power * out.z();
       }
     }
     low += width;

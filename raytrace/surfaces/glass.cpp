@@ -161,11 +161,8 @@ std::string describe(double index, double alpha) {
 }  // namespace
 
 GlassBase glass_base(const OpticalSurface& base) {
-  const auto some = [](const BandValues& values) {
-    return std::any_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
-  };
-  if (some(base.transmitted)) return GlassBase::pane;
-  return some(base.specular) ? GlassBase::cell : GlassBase::matt;
+  if (any_positive(base.transmitted)) return GlassBase::pane;
+  return any_positive(base.specular) ? GlassBase::cell : GlassBase::matt;
 }
 
 OpticalSurface behind_glass(const OpticalSurface& base, double index, double alpha) {

@@ -37,13 +37,13 @@ double interpolated(const BrdfTable& table, double incidence, double scatter, do
     const double weight =
         (di ? i.part : 1.0 - i.part) * (dk ? o.part : 1.0 - o.part) * (da ? a.part : 1.0 - a.part);
     if (weight == 0.0) continue;
-    sum += weight * table.brdf_1_sr[table.index(i.below + di, o.below + dk, a.below + da)];
+    sum += weight * table.at(i.below + di, o.below + dk, a.below + da);
   }
   return sum;
 }
 
 double symmetrise(const BrdfTable& table, ReciprocalBrdf& brdf) {
-  const std::vector<double>& polar = brdf.polar_rad;
+  const std::vector<double>& polar = brdf.incidence_rad;
   double difference2 = 0.0, mean2 = 0.0;
   for (size_t i = 0; i < polar.size(); ++i) {
     for (size_t o = 0; o <= i; ++o) {
@@ -57,7 +57,7 @@ double symmetrise(const BrdfTable& table, ReciprocalBrdf& brdf) {
         const double mean = one_way == other_way  ? 0.5 * (there + back)
                             : one_way < other_way ? there
                                                   : back;
-        brdf.brdf_1_sr[brdf.index(i, o, a)] = brdf.brdf_1_sr[brdf.index(o, i, a)] = mean;
+        brdf.at(i, o, a) = brdf.at(o, i, a) = mean;
         if (one_way > 0.0 || other_way > 0.0) continue;
         difference2 += (there - back) * (there - back);
         mean2 += mean * mean;
@@ -71,13 +71,13 @@ double symmetrise(const BrdfTable& table, ReciprocalBrdf& brdf) {
 // undefined.
 void average_along_normal(ReciprocalBrdf& brdf) {
   const std::vector<double>& azimuth = brdf.azimuth_rad;
-  for (size_t o = 0; o < brdf.polar_rad.size(); ++o) {
+  for (size_t o = 0; o < brdf.incidence_rad.size(); ++o) {
     double mean = 0.0;
     for (size_t a = 0; a + 1 < azimuth.size(); ++a) {
       mean += 0.5 * (brdf.at(0, o, a) + brdf.at(0, o, a + 1)) * (azimuth[a + 1] - azimuth[a]) / pi;
     }
     for (size_t a = 0; a < azimuth.size(); ++a) {
-      brdf.brdf_1_sr[brdf.index(0, o, a)] = brdf.brdf_1_sr[brdf.index(o, 0, a)] = mean;
+      brdf.at(0, o, a) = brdf.at(o, 0, a) = mean;
     }
   }
 }
@@ -93,9 +93,11 @@ NodePlace place_among(const std::vector<double>& nodes, double angle) {
 
 ReciprocalBrdf reciprocal_brdf(const BrdfTable& table) {
   ReciprocalBrdf brdf;
-  brdf.polar_rad = joined(table.incidence_rad, table.scatter_rad, 0.5 * pi);
+  brdf.incidence_rad = joined(table.incidence_rad, table.scatter_rad, 0.5 * pi);
+  brdf.scatter_rad = brdf.incidence_rad;
   brdf.azimuth_rad = joined(table.azimuth_rad, {}, pi);
-  brdf.brdf_1_sr.resize(brdf.polar_rad.size() * brdf.polar_rad.size() * brdf.azimuth_rad.size());
+  const size_t polar = brdf.incidence_rad.size();
+  brdf.brdf_1_sr.resize(polar * polar * brdf.azimuth_rad.size());
   brdf.asymmetry = symmetrise(table, brdf);
   average_along_normal(brdf);
   return brdf;
@@ -147,18 +149,14 @@ class BrdfLobe final : public Lobe {
     const double high = part * reflectance_[i + 1], low = (1.0 - part) * reflectance_[i];
     const size_t node = draw.extra(1) * (low + high) < high ? i + 1 : i;
     const Cell cell = choose_cell(node, draw.u);
-    double along = cell.along, around = draw.v;
+    CellPoint point = point_in(cell, cell.along, draw.v);
     constexpr uint64_t most = 256;  // the acceptance is at least 1/4
-    for (uint64_t attempt = 0; attempt < most; ++attempt) {
-      if (attempt > 0) {
-        along = draw.extra(3 * attempt);
-        around = draw.extra(3 * attempt + 1);
-      }
-      const CellPoint point = point_in(cell, along, around);
-      if (draw.extra(3 * attempt + 2) * cell.largest < value_in(node, cell, point))
-        return point.out;
+    for (uint64_t attempt = 1; attempt < most; ++attempt) {
+      if (draw.extra(3 * attempt - 1) * cell.largest < value_in(node, cell, point)) break;
+      const Draw now = draw.attempt(attempt);
+      point = point_in(cell, now.u, now.v);
     }
-    return point_in(cell, along, around).out;
+    return point.out;
   }
 
   Vec3 mean_direction(const Arrival& light) const override {
@@ -184,7 +182,7 @@ class BrdfLobe final : public Lobe {
   }
 
  private:
-  const std::vector<double>& polar() const { return brdf_.polar_rad; }
+  const std::vector<double>& polar() const { return brdf_.incidence_rad; }
   const std::vector<double>& azimuth() const { return brdf_.azimuth_rad; }
   // Place of a cosine among the polar angles.
   NodePlace place_of(double cosine) const {

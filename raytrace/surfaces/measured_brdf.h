@@ -29,24 +29,18 @@ struct BrdfTable {
   double& at(size_t incidence, size_t scatter, size_t azimuth) {
     return brdf_1_sr[index(incidence, scatter, azimuth)];
   }
+  double at(size_t incidence, size_t scatter, size_t azimuth) const {
+    return brdf_1_sr[index(incidence, scatter, azimuth)];
+  }
 };
 
 // A table with f(i, o) = f(o, i). Incidence and scattering have the same nodes, from 0 to π/2; the
 // azimuth runs from 0 to π; along the normal f does not depend on the azimuth. Linear in each of
 // the three angles between nodes.
-struct ReciprocalBrdf {
-  std::vector<double> polar_rad, azimuth_rad;
-  std::vector<double> brdf_1_sr;  // [incidence][scatter][azimuth]
+struct ReciprocalBrdf : BrdfTable {
   // Root mean square of f(i, o) − f(o, i), divided by the root mean square of their mean, over
   // pairs that the table has in both directions; 0 if there are none.
   double asymmetry = 0.0;
-
-  double at(size_t incidence, size_t scatter, size_t azimuth) const {
-    return brdf_1_sr[index(incidence, scatter, azimuth)];
-  }
-  size_t index(size_t incidence, size_t scatter, size_t azimuth) const {
-    return (incidence * polar_rad.size() + scatter) * azimuth_rad.size() + azimuth;
-  }
 };
 
 // Symmetrises a table. A pair of directions gets the mean of both measured values, or the only

@@ -67,7 +67,9 @@ void load_planes(const TraceableScene::Data& scene, HitBuffer& buffer) {
     std::array<const double*, 4> rows;
     for (int k = 0; k < 4; ++k) {
       const int hit = std::min(i + k, hits.count - 1);
-      rows[static_cast<size_t>(k)] = scene.plane(hits.instance[hit], hits.triangle[hit]).normal;
+      // The normal and, behind it in memory, the offset.
+      rows[static_cast<size_t>(k)] =
+          scene.plane(hits.instance[hit], hits.triangle[hit]).normal.data();
     }
     transpose_4x4(rows, &buffer.plane[0][i], Hits::rows);
   }
@@ -149,7 +151,7 @@ int compact(HitBuffer& buffer, Hits::Column<int>& kept) {
 void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer) {
   Hits& hits = buffer.hits;
   const auto& ray = buffer.ray;
-  std::fill_n(hits.depth.begin(), hits.count, static_cast<uint16_t>(depth));
+  hits.depth = depth;
   const bool one_instance = hits.count > 0 && on_one_instance(hits);
   if (one_instance && scene.flat[hits.instance[0]] != 0) {
     const TrianglePlane& plane = scene.plane(hits.instance[0], 0);

@@ -12,6 +12,13 @@ namespace photorque {
 
 // Hits before they reach the receivers, with data that only the tracer needs.
 struct HitBuffer {
+  explicit HitBuffer(int bands) {
+    hits.bands = bands;
+    for (size_t k = 0; k < 3; ++k) hits.direction[k] = ray[3 + k].data();
+  }
+  HitBuffer(const HitBuffer&) = delete;
+  HitBuffer& operator=(const HitBuffer&) = delete;
+
   Hits hits;
   Hits::Column<uint32_t> sample;
   // Rays in single precision: ox oy oz dx dy dz, then the bits of `sample`, then padding.
@@ -47,7 +54,7 @@ void find_hits(const TraceableScene::Data& scene, const RayList& rays, Coherence
 // row of hit j, or is unchanged if all rows are hits. Returns the number of hits.
 int compact(HitBuffer& buffer, Hits::Column<int>& kept);
 
-// Fills position, cosine, front, sample and depth of every hit, and one_side.
+// Fills depth and one_side, and position, cosine, front and sample of every hit.
 void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer);
 
 }  // namespace photorque

@@ -1,7 +1,6 @@
 #include "raytrace/tracing/interaction.h"
 
 #include <bit>
-#include <cmath>
 #include <numeric>
 
 #include "core/constants.h"

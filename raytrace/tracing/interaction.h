@@ -1,9 +1,7 @@
 // Interaction of rays with surfaces: absorption, choice of the lobe that continues, momentum.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <span>
+#include <array>
 #include <vector>
 
 #include "raytrace/receiver.h"

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -19,15 +18,9 @@ RayPlacement::RayPlacement(const RigidTransform& body_from_emitter,
   starts_late_ = start_z_m > 0.0;
   start_z_m_ = static_cast<float>(start_z_m);
   landing_z_m_ = static_cast<float>(centre_z_m);
-  const Mat3 rotation = body_from_emitter.rotation.toRotationMatrix();
-  const Vec3 offset_m = body_from_emitter.point(Vec3(0.0, 0.0, start_z_m));
-  for (size_t i = 0; i < 3; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    for (size_t k = 0; k < 3; ++k) {
-      rotation_[i][k] = static_cast<float>(rotation(row, static_cast<Eigen::Index>(k)));
-    }
-    offset_m_[i] = static_cast<float>(offset_m[row] - scene.centre_m[row]);
-  }
+  rotation_ = body_from_emitter.rotation.toRotationMatrix().cast<float>();
+  const Vec3 start_m = body_from_emitter.point(Vec3(0.0, 0.0, start_z_m));
+  offset_m_ = (start_m - scene.centre_m).cast<float>();
 }
 
 // Input and output do not overlap; __restrict lets the compiler vectorise.
@@ -37,8 +30,8 @@ void RayPlacement::place(const RayBlock& __restrict rays, RayColumns& __restrict
   const float start_m = start_z_m_, landing_m = landing_z_m_;
   const float late = starts_late_ ? 1.0f : 0.0f;
   const float ahead = landing_m > 0.0f ? 1.0f : 0.0f;
-  const auto r = rotation_;
-  const auto offset_m = offset_m_;
+  const Eigen::Matrix3f r = rotation_;
+  const Eigen::Vector3f offset_m = offset_m_;
   for (int i = 0; i < ray_block; ++i) {
     const float fx = rays.direction[0][i], fy = rays.direction[1][i], fz = rays.direction[2][i];
     const float ex = rays.origin_m[0][i], ey = rays.origin_m[1][i], ez = rays.origin_m[2][i];
@@ -49,9 +42,9 @@ void RayPlacement::place(const RayBlock& __restrict rays, RayColumns& __restrict
     // For rays that reach the plane, set z exactly, without rounding.
     const float on_plane = (fz > min_z ? 1.0f : 0.0f) * (gap_m > 0.0f ? 1.0f : 0.0f);
     const float sz = (1.0f - on_plane) * (step * fz + (ez - start_m));
-    for (size_t k = 0; k < 3; ++k) {
-      placed[k][i] = r[k][0] * sx + r[k][1] * sy + r[k][2] * sz + offset_m[k];
-      placed[3 + k][i] = r[k][0] * fx + r[k][1] * fy + r[k][2] * fz;
+    for (int k = 0; k < 3; ++k) {
+      placed[k][i] = r(k, 0) * sx + r(k, 1) * sy + r(k, 2) * sz + offset_m[k];
+      placed[3 + k][i] = r(k, 0) * fx + r(k, 1) * fy + r(k, 2) * fz;
     }
     const float reach = ahead * (landing_m - ez) * per_z + (1.0f - ahead);
     landing.x[i] = ahead * ex + reach * fx;
@@ -72,13 +65,6 @@ uint32_t cell_bits(uint32_t batch) {
   return (static_cast<uint32_t>(std::bit_width(batch)) - 3u) / 2u;
 }
 
-// Interleaves the bits of an 8-bit number with zeros (Morton order).
-constexpr uint32_t spread_bits(uint32_t x) {
-  x = (x | (x << 4)) & 0x0f0fu;
-  x = (x | (x << 2)) & 0x3333u;
-  return (x | (x << 1)) & 0x5555u;
-}
-
 // Grid of cells on the part of the plane where a batch lands.
 struct LandingGrid {
   uint32_t bits;  // per side
@@ -89,11 +75,11 @@ struct LandingGrid {
       : bits(cell_bits(batch)) {
     const auto [x_least, x_most] = std::minmax_element(some.x.begin(), some.x.end());
     const auto [y_least, y_most] = std::minmax_element(some.y.begin(), some.y.end());
-    x_low = std::max(*x_least, range.x_low);
-    y_low = std::max(*y_least, range.y_low);
+    x_low = std::max(*x_least, range.min().x());
+    y_low = std::max(*y_least, range.min().y());
     const float side = static_cast<float>(1u << bits);
-    x_scale = side / std::max(std::min(*x_most, range.x_high) - x_low, 1e-30f);
-    y_scale = side / std::max(std::min(*y_most, range.y_high) - y_low, 1e-30f);
+    x_scale = side / std::max(std::min(*x_most, range.max().x()) - x_low, 1e-30f);
+    y_scale = side / std::max(std::min(*y_most, range.max().y()) - y_low, 1e-30f);
   }
 };
 
@@ -104,8 +90,8 @@ void make_keys(const LaunchPlan& plan, const LandingGrid& grid, const Landing& a
   for (int i = 0; i < ray_block; ++i) {
     const float fx = std::min(std::max((at.x[i] - grid.x_low) * grid.x_scale, 0.0f), last);
     const float fy = std::min(std::max((at.y[i] - grid.y_low) * grid.y_scale, 0.0f), last);
-    const uint32_t cell = spread_bits(static_cast<uint32_t>(static_cast<int32_t>(fx))) |
-                          (spread_bits(static_cast<uint32_t>(static_cast<int32_t>(fy))) << 1);
+    const uint32_t cell = with_gaps(static_cast<uint32_t>(static_cast<int32_t>(fx))) |
+                          (with_gaps(static_cast<uint32_t>(static_cast<int32_t>(fy))) << 1);
     const uint32_t octant = (std::bit_cast<uint32_t>(placed[3][i]) >> 31) * step[0] +
                             (std::bit_cast<uint32_t>(placed[4][i]) >> 31) * step[1] +
                             (std::bit_cast<uint32_t>(placed[5][i]) >> 31) * step[2];
@@ -136,8 +122,7 @@ void counting_sort(uint32_t key_count, LaunchBuffer& buffer) {
 
 // Statistics of a sample of a beam's rays.
 struct BeamSample {
-  static constexpr float most = std::numeric_limits<float>::max();
-  LandingRange range{most, -most, most, -most};
+  LandingRange range;
   std::array<uint32_t, 3> negative{};     // components of directions in the body frame
   double aperture2 = 0.0, spread2 = 0.0;  // Σ x² + y² of origins, and of directions
   static constexpr uint32_t rays = 4 * sobol_block;
@@ -164,10 +149,7 @@ BeamSample sample_beam(const Emitter& emitter, const std::optional<Targets>& tar
     emit(emitter, targets, samples, rays);
     placement.place(rays, placed, landing);
     for (size_t i = 0; i < ray_block; ++i) {
-      const float x = landing.x[i], y = landing.y[i];
-      LandingRange& range = sample.range;
-      range.x_low = std::min(range.x_low, x), range.x_high = std::max(range.x_high, x);
-      range.y_low = std::min(range.y_low, y), range.y_high = std::max(range.y_high, y);
+      sample.range.extend(Eigen::Vector2f(landing.x[i], landing.y[i]));
       for (size_t k = 0; k < 2; ++k) {
         sample.aperture2 += rays.origin_m[k][i] * rays.origin_m[k][i];
         sample.spread2 += rays.direction[k][i] * rays.direction[k][i];
@@ -206,12 +188,9 @@ LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_e
                                 std::sqrt(sample.spread2) * std::max(centre.z(), 0.0));
   LaunchPlan plan{SobolCells(log2_rays, bits), placement, std::move(targets), sample.range};
   if (centre.z() > 0.0) {  // rays that miss the scene need no order
-    const auto radius = static_cast<float>(scene.radius_m);
-    const auto cx = static_cast<float>(centre.x()), cy = static_cast<float>(centre.y());
-    plan.range.x_low = std::max(plan.range.x_low, cx - radius);
-    plan.range.x_high = std::min(plan.range.x_high, cx + radius);
-    plan.range.y_low = std::max(plan.range.y_low, cy - radius);
-    plan.range.y_high = std::min(plan.range.y_high, cy + radius);
+    const Eigen::Vector2f middle = centre.head<2>().cast<float>();
+    const auto radius = Eigen::Vector2f::Constant(static_cast<float>(scene.radius_m));
+    plan.range.clamp({middle - radius, middle + radius});
   }
   for (size_t k = 0; k < 3; ++k) {
     if (sample.negative[k] == 0 || sample.negative[k] == BeamSample::rays) continue;

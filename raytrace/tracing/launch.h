@@ -26,9 +26,7 @@ struct Landing {
 };
 
 // A rectangle of that plane.
-struct LandingRange {
-  float x_low, x_high, y_low, y_high;
-};
+using LandingRange = Eigen::AlignedBox2f;
 
 // Moves the start of rays near the scene. Rays start where they cross a plane z = const of the
 // emitter's frame just before the scene. If no such plane has the whole scene behind it, they start
@@ -48,9 +46,9 @@ class RayPlacement {
   bool starts_late_;
   float start_z_m_;  // of the plane before the scene; 0 if there is none
   float landing_z_m_;
-  std::array<std::array<float, 3>, 3> rotation_;
-  std::array<float, 3>
-      offset_m_;  // from the scene's centre to the emitter's (0, 0, start_z), in body axes
+  Eigen::Matrix3f rotation_;
+  // from the scene's centre to the emitter's (0, 0, start_z), in body axes
+  Eigen::Vector3f offset_m_;
 };
 
 // A ray as Embree requires it, relative to the scene's centre in body axes. Its single-precision

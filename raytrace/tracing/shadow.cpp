@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/numerics/connected.h"
+#include "core/numerics/divide_convex.h"
 #include "raytrace/tracing/traceable_scene_data.h"
 
 namespace photorque {
@@ -18,15 +19,12 @@ struct Polygon {
 // Part of a polygon with sign · z ≥ sign · at.
 Polygon cut(const Polygon& polygon, double at, double sign) {
   Polygon kept;
-  for (size_t i = 0; i < polygon.count; ++i) {
-    const Vec3& a = polygon.corner[i];
-    const Vec3& b = polygon.corner[i + 1 == polygon.count ? 0 : i + 1];
-    const double from = sign * (a.z() - at), to = sign * (b.z() - at);
-    if (from >= 0.0) kept.corner[kept.count++] = a;
-    if ((from < 0.0) != (to < 0.0) && from != 0.0 && to != 0.0) {
-      kept.corner[kept.count++] = a + from / (from - to) * (b - a);
-    }
-  }
+  divide_convex(
+      std::span(polygon.corner).first(polygon.count),
+      [&](const Vec3& p) { return sign * (p.z() - at); },
+      [&](const Vec3& p, double side) {
+        if (side >= 0.0) kept.corner[kept.count++] = p;
+      });
   return kept;
 }
 

@@ -203,17 +203,6 @@ void BitGrid::halve() {
   *this = std::move(half);
 }
 
-// Morton code: interleaves the bits of a 16-bit number with zeros, and the inverse.
-uint32_t with_gaps(uint32_t x) {
-  x = (x | (x << 8)) & 0x00ff00ffu;
-  x = (x | (x << 4)) & 0x0f0f0f0fu;
-  x = (x | (x << 2)) & 0x33333333u;
-  return (x | (x << 1)) & 0x55555555u;
-}
-uint16_t without_gaps(uint32_t x) {
-  return static_cast<uint16_t>(even_bits(x));
-}
-
 Targets::Cells BitGrid::cells() const {
   std::vector<uint32_t> curve;
   for (size_t row = 0; row < side_; ++row) {
@@ -228,7 +217,8 @@ Targets::Cells BitGrid::cells() const {
   std::sort(curve.begin(), curve.end());
   Targets::Cells cells{low_m_.x(), low_m_.y(), size_m_, {}};
   for (const uint32_t place : curve) {
-    cells.cells.push_back({without_gaps(place), without_gaps(place >> 1)});
+    cells.cells.push_back(
+        {static_cast<uint16_t>(even_bits(place)), static_cast<uint16_t>(even_bits(place >> 1))});
   }
   return cells;
 }

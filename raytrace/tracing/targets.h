@@ -5,10 +5,18 @@
 #include <optional>
 #include <vector>
 
-#include "raytrace/parallel_light.h"
+#include "raytrace/emitter.h"
 #include "raytrace/tracing/traceable_scene_data.h"
 
 namespace photorque {
+
+// Interleaves the bits of a 16-bit number with zeros, for Morton codes.
+constexpr uint32_t with_gaps(uint32_t x) {
+  x = (x | (x << 8)) & 0x00ff00ffu;
+  x = (x | (x << 4)) & 0x0f0f0f0fu;
+  x = (x | (x << 2)) & 0x33333333u;
+  return (x | (x << 1)) & 0x55555555u;
+}
 
 // Cells of a disc about the scene, perpendicular to a ParallelLight, from which rays can meet a
 // triangle. This disc replaces that of the light, which may be far from the scene: rays in single

@@ -63,12 +63,12 @@ bool flatten(std::span<const Vec3> vertices_m, const Mesh& mesh, double scene_ra
     }
   }
   const TrianglePlane plane = planes[largest];
-  const Vec3 normal(plane.normal[0], plane.normal[1], plane.normal[2]);
   for (size_t i = 0; i < planes.size(); ++i) {
-    const TrianglePlane& other = planes[i];
-    if (normal.dot(Vec3(other.normal[0], other.normal[1], other.normal[2])) < 0.0) return false;
+    if (plane.normal.dot(planes[i].normal) < 0.0) return false;
     for (const uint32_t vertex : mesh.triangles[i]) {
-      if (std::abs(normal.dot(vertices_m[vertex]) - plane.offset_m) > rounding_m) return false;
+      if (std::abs(plane.normal.dot(vertices_m[vertex]) - plane.offset_m) > rounding_m) {
+        return false;
+      }
     }
   }
   std::fill(planes.begin(), planes.end(), plane);
@@ -109,7 +109,7 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
     const Vec3 cross = (placed[b] - placed[a]).cross(placed[c] - placed[a]);
     const double length = cross.norm();
     const Vec3 normal = length > 0.0 ? Vec3(cross / (mirrored ? -length : length)) : Vec3::UnitZ();
-    data.planes.push_back({{normal.x(), normal.y(), normal.z()}, normal.dot(placed[a])});
+    data.planes.push_back({normal, normal.dot(placed[a])});
   }
   const bool flat = flatten(placed, mesh, data.radius_m,
                             std::span(data.planes).subspan(data.first_triangle.back()));

@@ -12,9 +12,10 @@ namespace photorque {
 // The plane of a triangle: points p, relative to the scene's centre_m in body axes, with
 // normal · p = offset_m. The normal has unit length and points to the front.
 struct TrianglePlane {
-  double normal[3];
+  Vec3 normal;
   double offset_m;
 };
+static_assert(sizeof(TrianglePlane) == 4 * sizeof(double), "planes are loaded as four numbers");
 
 struct TraceableScene::Data {
   Data() = default;
@@ -57,8 +58,8 @@ struct TraceableScene::Data {
   }
   // Normal on the front or the back of a triangle.
   Vec3 normal(uint32_t instance, uint32_t triangle, uint8_t front) const {
-    const Eigen::Map<const Vec3> outward(plane(instance, triangle).normal);
-    return front != 0 ? Vec3(outward) : Vec3(-outward);
+    const Vec3& outward = plane(instance, triangle).normal;
+    return front != 0 ? outward : Vec3(-outward);
   }
 };
 

@@ -86,10 +86,7 @@ BatchTracer::BatchTracer(const TraceableScene::Data& scene,
     : scene_(scene),
       receivers_(receivers),
       options_(options),
-      hits_(std::make_unique<HitBuffer>()) {
-  hits_->hits.bands = scene.scene.bands.count();
-  for (size_t k = 0; k < 3; ++k) hits_->hits.direction[k] = hits_->ray[3 + k].data();
-}
+      hits_(std::make_unique<HitBuffer>(scene.scene.bands.count())) {}
 
 void BatchTracer::run(const BeamPlan& plan, const SobolStream& stream, uint32_t batch,
                       const HitOrigin& origin, TraceSums& sums) {
@@ -232,33 +229,6 @@ Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from
 // Number of parts into which the batches of one replicate are divided. It is fixed, so that sums do
 // not depend on the number of threads.
 constexpr uint64_t max_parts = 4;
-
-// Idle batch tracers for reuse: each thread allocates their memory once.
-class TracerPool {
- public:
-  TracerPool(const TraceableScene::Data& scene, std::span<const Receiver* const> receivers,
-             const TraceOptions& options)
-      : scene_(scene), receivers_(receivers), options_(options) {}
-
-  std::unique_ptr<BatchTracer> take() {
-    const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<BatchTracer>(scene_, receivers_, options_);
-    auto tracer = std::move(idle_.back());
-    idle_.pop_back();
-    return tracer;
-  }
-  void return_tracer(std::unique_ptr<BatchTracer> tracer) {
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(tracer));
-  }
-
- private:
-  const TraceableScene::Data& scene_;
-  std::span<const Receiver* const> receivers_;
-  const TraceOptions& options_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<BatchTracer>> idle_;
-};
 
 TraceSums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
                      std::span<const Receiver* const> receivers, uint64_t seed, size_t item,
@@ -422,7 +392,6 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
   const size_t replicates = static_cast<size_t>(options.replicates);
   const size_t items = replicates * parts;
   Replicates sums(replicates, parts, data.scene.instances.size(), receivers);
-  TracerPool pool(data, receivers, options);
   std::atomic<uint64_t> finished = 0;
   const uint64_t batches = plan.batches * replicates;
   const auto batch_done = [&] {
@@ -430,10 +399,9 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
     if (options.progress) options.progress(static_cast<double>(now) / static_cast<double>(batches));
   };
   parallel_for(items, options.threads, [&](size_t item) {
-    auto tracer = pool.take();
-    sums.add(item, trace_part(*tracer, data.scene.instances.size(), plan, receivers, options.seed,
+    BatchTracer tracer(data, receivers, options);
+    sums.add(item, trace_part(tracer, data.scene.instances.size(), plan, receivers, options.seed,
                               item, parts, batch_done));
-    pool.return_tracer(std::move(tracer));
   });
 
   TraceResult result;

@@ -50,7 +50,7 @@ std::vector<VisiblePoint> look(const TraceableScene& scene, size_t count,
       sights.push_back(sight(i));
       rays.push_back(nearby_ray(data, sights.back(), i - first));
     }
-    const auto buffer = std::make_unique<HitBuffer>();
+    const auto buffer = std::make_unique<HitBuffer>(data.scene.bands.count());
     const auto kept = std::make_unique<Hits::Column<int>>();
     find_hits(data, {rays, {}}, Coherence::incoherent, *buffer);
     compact(*buffer, *kept);

@@ -13,22 +13,6 @@
 namespace photorque {
 namespace {
 
-// Quantity of ShadedSampler: the power of a shadow ray.
-class SampledFlux {
- public:
-  using Value = double;
-
-  explicit SampledFlux(const FluxEntries& flux) : flux_(flux) {}
-  double of(const CandidateRay& ray, const GatherLamp&) const { return ray.power_W; }
-  void add(double power_W, const GatherLamp& lamp, size_t bin, uint32_t instance,
-           std::span<double> entries) const {
-    flux_.add(power_W, lamp, bin, instance, entries);
-  }
-
- private:
-  const FluxEntries& flux_;
-};
-
 // Largest relative standard error of the irradiance of bins above the floor.
 double worst_error_of(const FluxMapReceiver& map, const BinSums& sums, double floor) {
   std::vector<Estimate> bins;
@@ -80,10 +64,9 @@ Gathered gather_on(const Gathering& gathering, const FluxMapReceiver& map,
   result.open_pairs = std::accumulate(open.begin(), open.end(), size_t{0});
   result.shaded_pairs = gathering.shaded_pairs();
   for (int points = options.points;; points *= 2) {
-    result.direct = {
-        map.direct_entries(), options.replicates,
-        sample_shaded(gathering, SampledFlux(flux), open_W, options, points, result.shadow_rays),
-        bound_W};
+    result.direct = {map.direct_entries(), options.replicates,
+                     sample_shaded(gathering, flux, open_W, options, points, result.shadow_rays),
+                     bound_W};
     result.worst_error = worst_error_of(map, result.direct, options.floor);
     const bool enough = result.worst_error <= options.target_error;
     if (options.target_error <= 0.0 || enough || 2 * points > max_points) return result;
@@ -127,7 +110,7 @@ Gathered gather_direct(const TraceableScene& scene, const RigidTransform& lab_fr
     throw InputError({"gather"}, map.name(), "a surface or a source that needs rays",
                      "one side of a flat surface, and sources with uniform apertures");
   }
-  const Gathering gathering(scene, lab_from_body, beams, {map.grid(), map.bands(), map.grid().side},
+  const Gathering gathering(scene, lab_from_body, beams, map.grid(), map.grid().side,
                             options.threads, true);
   return gather_on(gathering, map, options);
 }

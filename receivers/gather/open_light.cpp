@@ -60,8 +60,7 @@ size_t OpenLight::add(const BinTile& tile, const Lamps& lamps, LampSides& sides,
     for (const GatherLamp* lamp : rest) open += add_bin(tile, ball, *lamp, sides[lamp], entries);
     return open;
   }
-  const auto [low, high] = tile.halves();
-  for (const BinTile& half : {low, high}) {
+  for (const BinTile& half : tile.halves()) {
     Lamps lit;
     const Ball half_ball = plane_.ball_of(half);
     std::copy_if(rest.begin(), rest.end(), std::back_inserter(lit),

@@ -15,12 +15,15 @@
 
 #include "receivers/flux_map.h"
 #include "receivers/gather/quadrature.h"
+#include "receivers/gather/shaded_sampler.h"
 
 namespace photorque {
 
-// Adds power to the direct entries of a flux map.
+// Adds power to the direct entries of a flux map. A Quantity of ShadedSampler.
 class FluxEntries {
  public:
+  using Value = double;
+
   FluxEntries(const GatherPlane& plane, const FluxMapReceiver& map) : plane_(plane), map_(map) {}
 
   // Adds the power in a band, and the part of it that the instance's surface absorbs.
@@ -30,6 +33,8 @@ class FluxEntries {
     entries[at] += power_W;
     entries[at + 1] += power_W * plane_.surface(instance).absorbed[band];
   }
+  // The power of a ray.
+  double of(const CandidateRay& ray, const GatherLamp&) const { return ray.power_W; }
   // Adds power of a lamp to all bands.
   void add(double power_W, const GatherLamp& lamp, size_t bin, uint32_t instance,
            std::span<double> entries) const;

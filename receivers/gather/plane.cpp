@@ -64,18 +64,6 @@ void add_pieces(const Scene& scene, const SurfaceGrid& grid, const SurfaceFace& 
   });
 }
 
-// Counting sort. Returns the first index of each bin, and the end index.
-std::vector<uint32_t> sort_by_bin(std::vector<CellPiece>& pieces, size_t bins) {
-  std::vector<uint32_t> begin(bins + 1, 0);
-  for (const CellPiece& piece : pieces) ++begin[piece.bin + 1];
-  for (size_t bin = 0; bin < bins; ++bin) begin[bin + 1] += begin[bin];
-  std::vector<uint32_t> next(begin.begin(), begin.end() - 1);
-  std::vector<CellPiece> sorted(pieces.size());
-  for (const CellPiece& piece : pieces) sorted[next[piece.bin]++] = piece;
-  pieces = std::move(sorted);
-  return begin;
-}
-
 // If the only instance of the bin fills it exactly once, sets `whole` to one parallelogram. Returns
 // whether it does.
 bool fill_whole(const SurfaceGrid& grid, const BinPatches& plane, size_t bin, uint32_t instance,
@@ -138,7 +126,8 @@ BinPatches bin_patches(const Scene& scene, const SurfaceGrid& grid) {
   if (std::find(in_part.begin(), in_part.end(), true) != in_part.end()) {
     for (const SurfaceFace& face : faces) add_pieces(scene, grid, face, in_part, pieces);
   }
-  const std::vector<uint32_t> begin = sort_by_bin(pieces, grid.bins());
+  std::ranges::stable_sort(pieces, {}, &CellPiece::bin);
+  auto piece = pieces.begin();
   all.patches.reserve(grid.bins());
   for (size_t bin = 0; bin < grid.bins(); ++bin) {
     all.first.push_back(static_cast<uint32_t>(all.patches.size()));
@@ -147,13 +136,13 @@ BinPatches bin_patches(const Scene& scene, const SurfaceGrid& grid) {
       fill_whole(grid, all, bin, instances[bin], whole);
       all.patches.push_back(whole);
     }
-    for (uint32_t p = begin[bin]; p < begin[bin + 1]; ++p) all.patches.push_back(pieces[p].patch);
+    for (; piece != pieces.end() && piece->bin == bin; ++piece) all.patches.push_back(piece->patch);
   }
   all.first.push_back(static_cast<uint32_t>(all.patches.size()));
   return all;
 }
 
-std::pair<BinTile, BinTile> BinTile::halves() const {
+std::array<BinTile, 2> BinTile::halves() const {
   BinTile low = *this, high = *this;
   if (columns >= rows) {
     low.columns = columns / 2;
@@ -182,13 +171,8 @@ std::vector<BinTile> squares_of(const SurfaceGrid& grid) {
   return squares;
 }
 
-GatherPlane::GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, const Bands& bands,
-                         Side side)
-    : scene_(scene),
-      grid_(grid),
-      bands_(bands),
-      side_(side),
-      patches_(bin_patches(scene.scene(), grid)) {
+GatherPlane::GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, Side side)
+    : scene_(scene), grid_(grid), side_(side), patches_(bin_patches(scene.scene(), grid)) {
   if (side == Side::back) patches_.normal = -patches_.normal;
   const double lean = patches_.normal.dot(grid.normal_body);
   const auto on_plane = [&](double u, double v) {

@@ -2,6 +2,7 @@
 // it. For the files of this folder only.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <memory>
@@ -50,7 +51,7 @@ struct BinTile {
   auto operator<=>(const BinTile&) const = default;
   int count() const { return columns * rows; }
   // Two halves of a tile of at least two bins.
-  std::pair<BinTile, BinTile> halves() const;
+  std::array<BinTile, 2> halves() const;
 };
 
 // Divides a grid into squares of at most 32 bins a side, of similar sizes: the items of parallel
@@ -61,11 +62,11 @@ std::vector<BinTile> squares_of(const SurfaceGrid& grid);
 class GatherPlane {
  public:
   // `side` is front or back.
-  GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, const Bands& bands, Side side);
+  GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, Side side);
 
   const TraceableScene& scene() const { return scene_; }
   const SurfaceGrid& grid() const { return grid_; }
-  const Bands& bands() const { return bands_; }
+  const Bands& bands() const { return scene_.scene().bands; }
   // Optical surface of an instance on this side.
   const OpticalSurface& surface(uint32_t instance) const {
     const Scene& scene = scene_.scene();
@@ -90,7 +91,6 @@ class GatherPlane {
  private:
   const TraceableScene& scene_;
   const SurfaceGrid& grid_;
-  const Bands& bands_;
   Side side_;
   BinPatches patches_;
   Vec3 corner_m_, column_m_, row_m_;

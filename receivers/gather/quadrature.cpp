@@ -5,6 +5,8 @@
 #include <functional>
 #include <set>
 
+#include "core/numerics/interpolation.h"
+
 namespace photorque {
 namespace {
 

@@ -6,7 +6,6 @@
 #include <map>
 #include <vector>
 
-#include "core/numerics/interpolation.h"
 #include "receivers/gather/plane.h"
 
 namespace photorque {

@@ -1,7 +1,6 @@
 #include "receivers/gather/shaded_sampler.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -10,8 +9,9 @@
 namespace photorque {
 
 Gathering::Gathering(const TraceableScene& scene, const RigidTransform& lab_from_body,
-                     std::span<const Beam> beams, const GatherSide& side, int threads, bool tables)
-    : plane_(scene, side.grid, side.bands, side.side),
+                     std::span<const Beam> beams, const SurfaceGrid& grid, Side side, int threads,
+                     bool tables)
+    : plane_(scene, grid, side),
       occluders_(occluders_above(scene.scene(), plane_.patches().point_m, plane_.normal())) {
   const RigidTransform body_from_lab = lab_from_body.inverse();
   const auto lights = lights_of(beams);
@@ -23,7 +23,7 @@ Gathering::Gathering(const TraceableScene& scene, const RigidTransform& lab_from
   }
   std::vector<uint32_t> all(occluders_.size());
   std::iota(all.begin(), all.end(), 0u);
-  const std::vector<BinTile> squares = squares_of(side.grid);
+  const std::vector<BinTile> squares = squares_of(grid);
   sights_.resize(squares.size());
   parallel_for(squares.size(), threads, [&](size_t t) {
     for (uint32_t lamp = 0; lamp < lamps_.size(); ++lamp) {
@@ -81,9 +81,7 @@ void Gathering::descend(const BinTile& tile, uint32_t index, std::span<const uin
     sight.shaded.push_back({static_cast<uint32_t>(bin), index});
     return;
   }
-  const auto [low, high] = tile.halves();
-  descend(low, index, occluders, sight);
-  descend(high, index, occluders, sight);
+  for (const BinTile& half : tile.halves()) descend(half, index, occluders, sight);
 }
 
 bool is_gatherable(const Scene& scene, const SurfaceGrid& grid, std::span<const Beam> beams) {

@@ -18,13 +18,6 @@
 
 namespace photorque {
 
-// The side of a flat grid on which light is gathered.
-struct GatherSide {
-  const SurfaceGrid& grid;
-  const Bands& bands;
-  Side side;  // front or back
-};
-
 // A tile that nothing can shade from one lamp, and a ball that contains it.
 struct OpenTile {
   BinTile tile;
@@ -41,9 +34,11 @@ struct TileSight {
 // The surface, the lamps and the bodies between them, at one attitude.
 class Gathering {
  public:
-  // With `tables`, lights that illuminate many bins get a table of their irradiance.
+  // `side` of the grid is front or back. With `tables`, lights that illuminate many bins get a
+  // table of their irradiance.
   Gathering(const TraceableScene& scene, const RigidTransform& lab_from_body,
-            std::span<const Beam> beams, const GatherSide& side, int threads, bool tables);
+            std::span<const Beam> beams, const SurfaceGrid& grid, Side side, int threads,
+            bool tables);
 
   const GatherPlane& plane() const { return plane_; }
   const GatherLamp& lamp(uint32_t index) const { return lamps_[index]; }

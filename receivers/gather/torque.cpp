@@ -1,11 +1,9 @@
 #include "receivers/gather/gather.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/numerics/interpolation.h"
 #include "receivers/gather/lamp.h"
 #include "receivers/gather/quadrature.h"
 #include "receivers/gather/shaded_sampler.h"
@@ -87,7 +85,9 @@ class OpenTorque {
           for (int column = 0; column < tile.columns; ++column) {
             const size_t bin = plane_.bin_at(tile.column + column, tile.row + row);
             const Vec3 mean(means[0](column, row), means[1](column, row), means[2](column, row));
-            add_bin(bin, mean, error, torque_N_m, bound_N_m);
+            const double area_m2 = plane_.patches().of(bin)[0].area_m2;
+            add_to_bin(area_m2 * mean, bin, torque_N_m);
+            add_to_bin(Vec3::Constant(area_m2 * error), bin, bound_N_m);
           }
         }
         return static_cast<size_t>(tile.count());
@@ -95,8 +95,7 @@ class OpenTorque {
     }
     if (tile.count() == 1) return add_patches(tile, lamp, tolerance_N_m, torque_N_m, bound_N_m);
     size_t open = 0;
-    const auto [low, high] = tile.halves();
-    for (const BinTile& half : {low, high}) {
+    for (const BinTile& half : tile.halves()) {
       const Ball half_ball = plane_.ball_of(half);
       if (!lamp.misses(half_ball)) open += add(half, half_ball, lamp, torque_N_m, bound_N_m);
     }
@@ -142,13 +141,6 @@ class OpenTorque {
       }
     }
     return instance;
-  }
-
-  void add_bin(size_t bin, const Vec3& density_N_m, double error_N_m, std::span<double> torque_N_m,
-               std::span<double> bound_N_m) const {
-    const double area_m2 = plane_.patches().of(bin)[0].area_m2;
-    add_to_bin(area_m2 * density_N_m, bin, torque_N_m);
-    add_to_bin(Vec3::Constant(area_m2 * error_N_m), bin, bound_N_m);
   }
 
   // Integrates over each patch by nested integrals; the inner one is divided at the kinks of the
@@ -200,8 +192,7 @@ class OpenTorque {
 void add_side(const TraceableScene& scene, const RigidTransform& lab_from_body,
               std::span<const Beam> beams, const TorqueMapReceiver& map, Side side,
               const GatherOptions& options, Gathered& total) {
-  const Gathering gathering(scene, lab_from_body, beams, {map.grid(), scene.scene().bands, side},
-                            options.threads, false);
+  const Gathering gathering(scene, lab_from_body, beams, map.grid(), side, options.threads, false);
   const Torque torque(gathering.plane(), map.about_body_m());
   const OpenTorque open_torque(gathering.plane(), torque);
   std::vector<double> open(map.direct_entries(), 0.0);

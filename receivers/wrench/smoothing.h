@@ -7,7 +7,6 @@
 // removed part.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 

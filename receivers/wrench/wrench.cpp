@@ -28,9 +28,10 @@ std::vector<std::string> unique_names(const Scene& scene, const std::vector<uint
 }
 
 // Adds the hits [begin, end), which are all on one part.
-void add_run(const Hits& hits, int begin, int end, const Vec3& about_m, std::span<double> sums) {
+void add_run(const Hits& hits, size_t begin, size_t end, const Vec3& about_m,
+             std::span<double> sums) {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-  for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+  for (size_t i = begin; i < end; ++i) {
     const Vec3 f = hits.force_at_N(i);
     force += f;
     torque += (hits.position_at_m(i) - about_m).cross(f);
@@ -56,19 +57,15 @@ size_t WrenchReceiver::bins() const {
   return 2 * part_names_.size() * wrench_components;
 }
 
-// Neighbouring hits usually share instance and depth; a run of them is summed in registers.
+// Neighbouring hits usually share the instance; a run of them is summed in registers.
 void WrenchReceiver::score(const Hits& hits, std::span<double> sums) const {
-  for (int begin = 0, end = 0; begin < hits.count; begin = end) {
-    const auto first = static_cast<size_t>(begin);
-    const uint32_t instance = hits.instance[first];
-    const bool bounced = hits.depth[first] > 0;
-    while (end < hits.count && hits.instance[static_cast<size_t>(end)] == instance &&
-           (hits.depth[static_cast<size_t>(end)] > 0) == bounced) {
-      ++end;
-    }
+  const auto count = static_cast<size_t>(hits.count);
+  for (size_t begin = 0, end = 0; begin < count; begin = end) {
+    const uint32_t instance = hits.instance[begin];
+    while (end < count && hits.instance[end] == instance) ++end;
     const size_t part = part_of_instance_[instance];
     if (part == part_names_.size()) continue;
-    const size_t entry = part * wrench_components + (bounced ? direct_entries() : 0);
+    const size_t entry = part * wrench_components + (hits.depth > 0 ? direct_entries() : 0);
     add_run(hits, begin, end, about_body_m_, sums.subspan(entry, wrench_components));
   }
 }
@@ -112,10 +109,6 @@ WrenchEstimate WrenchReceiver::total(const BinSums& sums) const {
 
 WrenchEstimate WrenchReceiver::direct(const BinSums& sums) const {
   return estimate(sums, [&](size_t group) { return group < part_names_.size(); });
-}
-
-WrenchEstimate WrenchReceiver::bounced(const BinSums& sums) const {
-  return estimate(sums, [&](size_t group) { return group >= part_names_.size(); });
 }
 
 Product WrenchReceiver::product(const BinSums& sums) const {

@@ -32,9 +32,8 @@ class WrenchReceiver final : public Receiver {
   // Wrench on all chosen instances together, and on each of them.
   WrenchEstimate total(const BinSums& sums) const;
   std::vector<WrenchEstimate> by_part(const BinSums& sums) const;
-  // Wrench on all chosen instances from direct light only, and from bounced light only.
+  // Wrench on all chosen instances from direct light only.
   WrenchEstimate direct(const BinSums& sums) const;
-  WrenchEstimate bounced(const BinSums& sums) const;
 
   // Names of the chosen instances: the node, made unique by path, material or number.
   const std::vector<std::string>& part_names() const { return part_names_; }

@@ -15,7 +15,6 @@ std::vector<LightEffectKind> array_effect_kinds() {
                                             .highest = 1.0,
                                             .form = EffectParameter::Form::slant};
   return {
-      // Multiplies the light that enters every cell by `factor`. Not visible in a scan.
       {.name = "soiling",
        .explanation = "dirt absorbs the same fraction of the light of all cells",
        .parameters = {remaining_fraction("fraction of the light that still enters the cells", 0.1)},
@@ -28,7 +27,6 @@ std::vector<LightEffectKind> array_effect_kinds() {
        .act = [refractive_index](
                   LightState& state, size_t,
                   Numbers x) { state.glass_index = value_of(refractive_index, x[0]); }},
-      // Multiplies the photocurrent of a cell by `factor`. Not visible in a scan.
       {.name = "cell_degraded",
        .explanation = "a cell converts less of its light into current than the others",
        .index = Index::cell,
@@ -36,7 +34,6 @@ std::vector<LightEffectKind> array_effect_kinds() {
                                          {-0.1, -0.5})},
        .in_scans = false,
        .act = multiplies_one(&LightState::cell_current)},
-      // Multiplies the light on the rectangle of a cell by `factor`. Visible in a scan.
       {.name = "cell_shaded",
        .explanation = "an object over a cell takes a fraction of its light",
        .index = Index::cell,

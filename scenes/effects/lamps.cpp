@@ -7,7 +7,6 @@ std::vector<LightEffectKind> lamp_effect_kinds() {
   using Index = LightEffectKind::Index;
   using Numbers = std::span<const double>;
   return {
-      // factor: 0 to 1.
       {.name = "led_derated",
        .explanation = "an LED gives less than its stated power",
        .index = Index::lamp,

@@ -71,7 +71,6 @@ std::vector<LightEffectKind> surroundings_effect_kinds() {
            [](LightState& state, size_t index, Numbers x) {
              state.walls.push_back({index, 0.0, x[0]});
            }},
-      // Multiplies the readings of a scan by `factor`.
       {.name = "detector_gain",
        .explanation = "the photodiode reads too much or too little by one factor",
        .parameters = {gain_factor("factor on the readings of a scan")},

@@ -1,17 +1,14 @@
-#include "scenes/experiment/doubts.h"
-
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
 
 #include "core/constants.h"
 #include "core/text/format.h"
+#include "scenes/experiment/experiment.h"
 
 namespace photorque {
 namespace {
 
-constexpr size_t max_named = 3;
 constexpr double inside = 0.75;  // winding number, with a margin for rounding
 
 // Winding number of a closed surface about a point: 1 inside, 0 outside, 1/2 on a face. It is the
@@ -34,14 +31,6 @@ double winding(const Scene& scene, const Instance& instance, const Vec3& point_m
   return std::abs(half_angles) / (2.0 * pi);
 }
 
-bool is_opaque(const Scene& scene, const Instance& instance) {
-  const auto lets_through = [](const OpticalSurface& surface) {
-    return std::ranges::any_of(surface.transmitted, [](double part) { return part > 0.0; });
-  };
-  return !lets_through(scene.surfaces[instance.front_surface]) &&
-         !lets_through(scene.surfaces[instance.back_surface]);
-}
-
 // Calls `found` with each closed opaque part and each lamp inside of it.
 template <class Found>
 void find_lamps_inside(const Scene& scene, std::span<const Beam> beams,
@@ -51,7 +40,7 @@ void find_lamps_inside(const Scene& scene, std::span<const Beam> beams,
   for (uint32_t part = 0; part < scene.instances.size(); ++part) {
     const Instance& instance = scene.instances[part];
     const Mesh& mesh = scene.meshes[instance.mesh];
-    if (!mesh.encloses || !is_opaque(scene, instance)) continue;
+    if (!mesh.encloses || scene.transmits(instance)) continue;
     const Eigen::AlignedBox3d box = scene.box_of(instance);
     for (const Beam& beam : beams) {
       const Vec3 at_m = body_from_lab.point(beam.lab_from_emitter.translation_m);
@@ -84,17 +73,26 @@ bool is_chamber(const Scene& scene, uint32_t part) {
   return scene.instances.size() > 1;
 }
 
-void add_lamps_inside(const Scene& scene, std::span<const Beam> beams,
-                      const RigidTransform& lab_from_body, std::vector<std::string>& lines) {
+}  // namespace
+
+void open_chambers(Scene& scene, std::span<const Beam> beams, const RigidTransform& lab_from_body) {
+  std::set<uint32_t> chambers;
+  find_lamps_inside(scene, beams, lab_from_body, [&](uint32_t part, const Beam&) {
+    if (is_chamber(scene, part)) chambers.insert(scene.instances[part].mesh);
+  });
+  for (const uint32_t mesh : chambers) scene.meshes[mesh].encloses = false;
+}
+
+std::vector<std::string> geometry_warnings(const Scene& scene, std::span<const Beam> beams,
+                                           const RigidTransform& lab_from_body) {
+  std::vector<std::string> lines;
+  constexpr size_t max_named = 3;
   size_t named = 0;
   find_lamps_inside(scene, beams, lab_from_body, [&](uint32_t part, const Beam& beam) {
     if (named++ >= max_named) return;
     lines.push_back("the lamp " + beam.name + " stands inside the closed part " +
                     scene.instances[part].path + ", and its light stays there");
   });
-}
-
-void add_unresolved_parts(const Scene& scene, std::vector<std::string>& lines) {
   // A ray starts at this offset above its surface, as a fraction of the scene's size (see
   // TraceableScene).
   constexpr double offset_of_size = 5e-7, offsets = 20.0;
@@ -111,28 +109,11 @@ void add_unresolved_parts(const Scene& scene, std::vector<std::string>& lines) {
     if (size_m[i] >= least_m) continue;
     if (count++ == 0 || size_m[i] < size_m[smallest]) smallest = i;
   }
-  if (count == 0) return;
+  if (count == 0) return lines;
   lines.push_back(
       printed("%zu part(s) are smaller than %.2g m, which is what single precision resolves in a "
               "scene of this size; the smallest is %s, %.2g m",
               count, least_m, scene.instances[smallest].path.c_str(), size_m[smallest]));
-}
-
-}  // namespace
-
-void open_chambers(Scene& scene, std::span<const Beam> beams, const RigidTransform& lab_from_body) {
-  std::set<uint32_t> chambers;
-  find_lamps_inside(scene, beams, lab_from_body, [&](uint32_t part, const Beam&) {
-    if (is_chamber(scene, part)) chambers.insert(scene.instances[part].mesh);
-  });
-  for (const uint32_t mesh : chambers) scene.meshes[mesh].encloses = false;
-}
-
-std::vector<std::string> geometry_warnings(const Scene& scene, std::span<const Beam> beams,
-                                           const RigidTransform& lab_from_body) {
-  std::vector<std::string> lines;
-  add_lamps_inside(scene, beams, lab_from_body, lines);
-  add_unresolved_parts(scene, lines);
   return lines;
 }
 

@@ -10,7 +10,6 @@
 #include "core/settings/files.h"
 #include "core/text/format.h"
 #include "receivers/kind.h"
-#include "scenes/experiment/doubts.h"
 #include "scenes/experiment/keys.h"
 #include "scenes/gltf/coincident.h"
 #include "scenes/gltf/lights.h"
@@ -183,25 +182,16 @@ void require_scene_file(const ExperimentFile& file) {
   require_plain_file(existing_file(scene, scene_key::file, file.path.parent_path()));
 }
 
-// Returns a function that reads files with names relative to the folder of `path`.
-std::function<std::optional<std::string>(const std::string&)> files_beside(
-    const std::filesystem::path& path) {
-  constexpr uint64_t largest_bytes = 1ull << 28;
-  return [folder = path.parent_path()](const std::string& name) -> std::optional<std::string> {
-    std::error_code unreadable;
-    if (!std::filesystem::is_regular_file(folder / name, unreadable)) return std::nullopt;
-    return read_file(folder / name, largest_bytes);
-  };
-}
-
 GltfModel read_model(const ExperimentFile& file, const PictureReader& picture) {
-  const GltfOptions options{.bands = file.bands,
-                            .materials = file.materials,
-                            .material_file = files_beside(file.path),
-                            .picture = file.textures ? picture : nullptr,
-                            .metres_per_unit = file.metres_per_unit,
-                            .origin_m = file.centre_of_rotation_m,
-                            .may_leave_folder = file.may_leave_folder};
+  constexpr uint64_t largest_bytes = 1ull << 28;  // of a file of a material
+  const GltfOptions options{
+      .bands = file.bands,
+      .materials = file.materials,
+      .material_file = files_beside(file.path.parent_path(), largest_bytes, true),
+      .picture = file.textures ? picture : nullptr,
+      .metres_per_unit = file.metres_per_unit,
+      .origin_m = file.centre_of_rotation_m,
+      .may_leave_folder = file.may_leave_folder};
   return file.cad ? read_cad(*file.scene_file, *file.cad, options)
                   : read_gltf(*file.scene_file, options);
 }
@@ -265,11 +255,6 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
   experiment.inputs = experiment.file.inputs;
   experiment.inputs.insert(experiment.inputs.end(), model.inputs.begin(), model.inputs.end());
   return experiment;
-}
-
-Experiment read_experiment(const std::filesystem::path& path,
-                           std::span<const std::string> overrides, const PictureReader& picture) {
-  return resolve_experiment(read_experiment_file(path, overrides), picture);
 }
 
 }  // namespace photorque

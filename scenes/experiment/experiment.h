@@ -158,9 +158,13 @@ struct Experiment {
 // a missing node, any key that was not read, and textures without a `picture` reader.
 Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture = {});
 
-// Calls read_experiment_file() and resolve_experiment().
-Experiment read_experiment(const std::filesystem::path& path,
-                           std::span<const std::string> overrides = {},
-                           const PictureReader& picture = {});
+// Marks closed opaque parts that contain a lamp and all other parts, such as a vacuum chamber, as
+// not enclosing: their inner sides are meant to be lit.
+void open_chambers(Scene& scene, std::span<const Beam> beams, const RigidTransform& lab_from_body);
+
+// Warnings, one line each: lamps whose centre is inside a closed opaque part, at this attitude;
+// parts that are too small, compared with the scene, for the single precision of ray casting.
+std::vector<std::string> geometry_warnings(const Scene& scene, std::span<const Beam> beams,
+                                           const RigidTransform& lab_from_body);
 
 }  // namespace photorque

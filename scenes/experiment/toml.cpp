@@ -11,13 +11,6 @@
 namespace photorque {
 namespace {
 
-template <typename T>
-std::string iso_text(const T& date_or_time) {
-  std::ostringstream text;
-  text << date_or_time;
-  return text.str();
-}
-
 SettingsNode to_settings(const toml::node& node, const std::string& name) {
   SettingsNode result;
   result.where = {name, static_cast<int>(node.source().begin.line)};
@@ -33,20 +26,17 @@ SettingsNode to_settings(const toml::node& node, const std::string& name) {
     SettingsNode::Array items;
     for (const auto& item : *array) items.push_back(to_settings(item, name));
     result.value = std::move(items);
-  } else if (const auto* text = node.as_string()) {
-    result.value = text->get();
-  } else if (const auto* whole = node.as_integer()) {
-    result.value = whole->get();
-  } else if (const auto* real = node.as_floating_point()) {
-    result.value = real->get();
-  } else if (const auto* flag = node.as_boolean()) {
-    result.value = flag->get();
-  } else if (const auto* date = node.as_date()) {
-    result.value = iso_text(date->get());
-  } else if (const auto* time = node.as_time()) {
-    result.value = iso_text(time->get());
-  } else if (const auto* moment = node.as_date_time()) {
-    result.value = iso_text(moment->get());
+  } else {
+    node.visit([&](const auto& leaf) {
+      using Leaf = decltype(leaf);
+      if constexpr (toml::is_date<Leaf> || toml::is_time<Leaf> || toml::is_date_time<Leaf>) {
+        std::ostringstream iso;
+        iso << leaf.get();
+        result.value = iso.str();
+      } else if constexpr (toml::is_value<Leaf>) {
+        result.value = leaf.get();
+      }
+    });
   }
   return result;
 }

@@ -1,7 +1,6 @@
 #include "scenes/gltf/coincident.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <map>

@@ -114,7 +114,7 @@ std::vector<uint32_t> GeometryReader::corners(const tinygltf::Primitive& primiti
   const int type = document_.model.accessors[static_cast<size_t>(primitive.indices)].componentType;
   const size_t end = std::min(vertex_count, restart_index(type));
   for (size_t i = 0; i < all.size(); ++i) {
-    all[i] = indices.index(i);
+    all[i] = static_cast<uint32_t>(indices.number(i, 0));
     if (all[i] >= end) {
       throw document_.wrong(pointer("accessors", primitive.indices),
                             "index " + std::to_string(all[i]) + " at element " + std::to_string(i),

@@ -24,8 +24,7 @@ constexpr const char* profile_extension = "EXT_lights_ies";
 
 // The extension's object in `owner`; an empty object if there is none.
 json lights_object(const json& owner, const char* extension) {
-  const json* const extensions = gltf::member_of(owner, "extensions");
-  const json* const found = extensions ? gltf::member_of(*extensions, extension) : nullptr;
+  const json* const found = gltf::extension_of(owner, extension);
   return found && found->is_object() ? *found : json::object();
 }
 

@@ -154,9 +154,8 @@ std::optional<AccessorReader> attribute(const Document& document, const nlohmann
 }  // namespace
 
 std::vector<Affine> gpu_instances(const Document& document, int node, MemoryBudget* budget) {
-  const nlohmann::json& json = document.json["nodes"][static_cast<size_t>(node)];
-  const nlohmann::json* const extensions = member_of(json, "extensions");
-  const nlohmann::json* const found = extensions ? member_of(*extensions, extension) : nullptr;
+  const nlohmann::json* const found =
+      extension_of(document.json["nodes"][static_cast<size_t>(node)], extension);
   if (!found) return {Affine::Identity()};
   const nlohmann::json& attributes = (*found)["attributes"];
   const std::string where = pointer("nodes", node, "extensions", extension, "attributes");

@@ -6,6 +6,7 @@
 #include <span>
 #include <tuple>
 
+#include "core/numerics/divide_convex.h"
 #include "receivers/gather/bodies/facets.h"
 
 namespace photorque {
@@ -19,13 +20,6 @@ std::optional<bool> Parts::inward(uint32_t part) {
   const auto [entry, is_new] = inward_.try_emplace(part);
   if (is_new) entry->second = fronts_look_inwards(faces_of(scene_, std::span(&part, 1)));
   return entry->second;
-}
-
-bool Parts::transmits(uint32_t part) const {
-  return std::ranges::any_of(std::array{true, false}, [&](bool front) {
-    return std::ranges::any_of(scene_.surface(scene_.instances[part], front).transmitted,
-                               [](double fraction) { return fraction > 0.0; });
-  });
 }
 
 std::optional<PlacedFace> placed(const Scene& scene, const Face& face) {
@@ -94,14 +88,11 @@ void add_keys(const PlacedFace& face, const Vec3& centre_m, double size_m,
 std::vector<Vec3> part_before(const std::vector<Vec3>& polygon, const Vec3& normal,
                               const Vec3& point_m) {
   std::vector<Vec3> part;
-  for (size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    const double from = normal.dot(a - point_m), to = normal.dot(b - point_m);
-    if (from >= 0.0) part.push_back(a);
-    if ((from < 0.0 && to > 0.0) || (from > 0.0 && to < 0.0)) {
-      part.push_back(a + from / (from - to) * (b - a));
-    }
-  }
+  divide_convex(
+      std::span(polygon), [&](const Vec3& at) { return normal.dot(at - point_m); },
+      [&](const Vec3& at, double side) {
+        if (side >= 0.0) part.push_back(at);
+      });
   return part;
 }
 

@@ -59,7 +59,7 @@ class Parts {
   // Result of fronts_look_inwards().
   std::optional<bool> inward(uint32_t part);
   // Whether either side transmits light.
-  bool transmits(uint32_t part) const;
+  bool transmits(uint32_t part) const { return scene_.transmits(scene_.instances[part]); }
   // Whether both are closed with their fronts on the same side. A solid and its lining are not.
   bool solids(uint32_t a, uint32_t b) { return inward(a) && inward(a) == inward(b); }
 

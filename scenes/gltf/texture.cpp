@@ -95,7 +95,7 @@ std::optional<BaseColours> base_colour_picture(const Document& document, int mat
   const std::string named = pointer("images", index.get<size_t>());
   const std::string bytes =
       image.contains("bufferView")
-          ? bytes_of_view(document, named + "/bufferView", image["bufferView"])
+          ? std::string(bytes_of_view(document, named + "/bufferView", image["bufferView"]))
           : load_uri({image, named, {"image/png", "image/jpeg"}}, document.file, open, budget);
   try {
     BaseColours picture = read(bytes);

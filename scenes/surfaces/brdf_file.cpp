@@ -1,5 +1,3 @@
-#include "scenes/surfaces/brdf_file.h"
-
 #include <algorithm>
 #include <array>
 
@@ -7,6 +5,7 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
+#include "scenes/surfaces/settings.h"
 
 namespace photorque {
 namespace {

@@ -6,11 +6,8 @@
 
 #include "core/constants.h"
 #include "core/text/format.h"
-#include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/glass.h"
-#include "raytrace/surfaces/measured_brdf.h"
 #include "raytrace/surfaces/mirrors.h"
-#include "scenes/surfaces/brdf_file.h"
 
 namespace photorque {
 namespace {
@@ -113,10 +110,6 @@ double read_alpha(const Settings& table) {
   return std::max(roughness * roughness, 1e-3);
 }
 
-bool any(const BandValues& values) {
-  return std::any_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
-}
-
 std::string list(const std::vector<const Fraction*>& some) {
   return joined_text(some, ", ", [](const Fraction* fraction) { return fraction->key.name; });
 }
@@ -124,7 +117,8 @@ std::string list(const std::vector<const Fraction*>& some) {
 // Glass in front of `base`, whose fractions have been read.
 OpticalSurface read_glass(const Settings& table, const OpticalSurface& base) {
   const double index = table.get(surface_key::refractive_index);
-  const int kinds = int{any(base.diffuse)} + int{any(base.specular)} + int{any(base.transmitted)};
+  const int kinds = int{any_positive(base.diffuse)} + int{any_positive(base.specular)} +
+                    int{any_positive(base.transmitted)};
   if (kinds > 1) {
     throw table.error(surface_key::refractive_index,
                       "more than one of specular, diffuse, transmittance",
@@ -177,7 +171,7 @@ void read_slope_error(const Settings& table, Bsdf& bsdf) {
 // Reads the lobe of the specular fraction, unless it is that of a mirror.
 void read_lobe(const Settings& table, const OpticalSurface& surface, Bsdf& bsdf) {
   for (const NumberKey& key : {surface_key::roughness, surface_key::slope_error}) {
-    if (table.has(key) && !any(surface.specular)) {
+    if (table.has(key) && !any_positive(surface.specular)) {
       throw table.error(key, "no specular fraction", "specular above 0, or refractive_index");
     }
   }
@@ -264,7 +258,7 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name) 
     }
   }
   const BandValues retroreflected = read_retroreflected(table, bands);
-  if (missing.size() == fractions.size() && !any(retroreflected)) {
+  if (missing.size() == fractions.size() && !any_positive(retroreflected)) {
     throw table.error("", "no optical property", list(missing));
   }
   for (size_t band = 0; band < static_cast<size_t>(bands); ++band) {
@@ -285,7 +279,7 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name) 
   }
   if (table.has(surface_key::refractive_index)) return read_glass(table, surface);
   read_lobe(table, surface, bsdf);
-  if (any(bsdf.retroreflected)) {
+  if (any_positive(bsdf.retroreflected)) {
     bsdf.description += (bsdf.description.empty() ? "" : ", ") +
                         printed("retroreflectance %.3g", bsdf.retroreflected[0]);
   }

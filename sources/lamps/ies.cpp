@@ -12,7 +12,6 @@
 #include "core/files.h"
 #include "core/numerics/vector_math.h"
 #include "core/text/format.h"
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 #include "sources/photometry/file.h"
 #include "sources/profiles/beam_shape.h"
@@ -206,13 +205,6 @@ SourceKind kind() {
   return {"ies",
           "A lamp with a measured intensity: an IES LM-63, IES TM-33 or EULUMDAT file, or a table",
           make,
-          {{"polar_deg", {SettingsNode::Array{{0.0}, {5.0}, {10.0}, {20.0}, {40.0}, {90.0}}}},
-           {"intensity", {SettingsNode::Array{{1.0}, {0.9}, {0.6}, {0.2}, {0.05}, {0.0}}}},
-           {"power_W", {2.0}},
-           {"aperture_diameter_m", {0.02}},
-           {"wavelength_nm", {730.0}},
-           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-           {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
           joined({{source_key::name.with_default("ies"), key::file, source_key::power},
                   {source_key::wavelength, source_key::spectral_fwhm},
                   lamp_place_keys(),

@@ -35,8 +35,6 @@ struct SourceKind {
   // Makes at least one beam in the lab frame. Reads all keys of the kind; throws InputError for
   // invalid ones.
   std::function<std::vector<Beam>(const Settings&, const SourceContext&)> make;
-  // Keys of a typical source of this kind, for tests of the laws that every source must obey.
-  SettingsNode::Table example;
   // Keys that `make` reads, in addition to `kind`.
   std::vector<Key> keys = {};
 };

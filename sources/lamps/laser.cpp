@@ -12,7 +12,6 @@
 #include "core/constants.h"
 #include "core/numerics/vector_math.h"
 #include "core/text/format.h"
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 #include "sources/profiles/sampling.h"
 
@@ -102,15 +101,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind kind() {
-  return {"laser",
-          "A laser beam, Gaussian in position and angle",
-          make,
-          {{"power_W", {0.005}},
-           {"wavelength_nm", {633.0}},
-           {"waist_radius_m", {0.0005}},
-           {"divergence_half_angle_deg", {0.1}},
-           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-           {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
+  return {"laser", "A laser beam, Gaussian in position and angle", make,
           joined({{source_key::name.with_default("laser"), source_key::power,
                    source_key::position.meaning("position of the waist, lab axes")},
                   {source_key::direction, source_key::aim},

@@ -1,5 +1,4 @@
 // An LED with its lens: a round aperture with a given angular profile.
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 
 namespace photorque::kinds::led {
@@ -18,18 +17,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind kind() {
-  return {"led",
-          "One LED: a round aperture with an angular profile",
-          make,
-          {{"power_W", {2.0}},
-           {"aperture_diameter_m", {0.02}},
-           {"profile", {"gaussian"}},
-           {"fwhm_deg", {3.0}},
-           {"halo_fraction", {0.2}},
-           {"halo_fwhm_deg", {12.0}},
-           {"wavelength_nm", {730.0}},
-           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-           {"aim_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}}},
+  return {"led", "One LED: a round aperture with an angular profile", make,
           joined({{source_key::name.with_default("led"), source_key::power,
                    source_key::position.meaning("centre of the aperture, lab axes")},
                   {source_key::direction, source_key::aim},

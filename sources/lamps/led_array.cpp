@@ -10,7 +10,6 @@
 
 #include "core/constants.h"
 #include "core/numerics/random.h"
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 
 namespace photorque::kinds::led_array {
@@ -55,17 +54,6 @@ constexpr NumberKey aim_spread(
 constexpr IntegerKey spread_seed("spread_seed", 1, 0, INT64_MAX,
                                  "seed of the random deviations; 0: no deviations");
 }  // namespace key
-
-std::vector<Vec3> grid(int columns, int rows, const Vec2& pitch_m) {
-  std::vector<Vec3> all;
-  for (int iy = 0; iy < rows; ++iy) {
-    for (int ix = 0; ix < columns; ++ix) {
-      all.emplace_back((ix - 0.5 * (columns - 1)) * pitch_m.x(),
-                       (iy - 0.5 * (rows - 1)) * pitch_m.y(), 0.0);
-    }
-  }
-  return all;
-}
 
 std::vector<Vec3> ring(int64_t count, double radius_m) {
   std::vector<Vec3> all;
@@ -126,7 +114,14 @@ std::vector<Vec3> read_grid(const Settings& settings) {
   } else {
     pitch_m.setConstant(settings.get(key::grid_pitch));
   }
-  return grid(static_cast<int>(count[0]), static_cast<int>(count[1]), pitch_m);
+  std::vector<Vec3> all;
+  for (int iy = 0; iy < count[1]; ++iy) {
+    for (int ix = 0; ix < count[0]; ++ix) {
+      all.emplace_back((ix - 0.5 * (count[0] - 1)) * pitch_m.x(),
+                       (iy - 0.5 * (count[1] - 1)) * pitch_m.y(), 0.0);
+    }
+  }
+  return all;
 }
 
 // Positions of the LEDs in the array's frame (its plane is z = 0), for every layout except
@@ -138,14 +133,6 @@ std::vector<Vec3> read_layout(const Settings& settings, Layout layout) {
     return ring(count, settings.get(key::ring_radius));
   }
   return hexagonal(count, settings.get(key::pitch));
-}
-
-// Frame of the panel. For a panel that looks straight down it is the half turn about x. Near there
-// the axes follow the direction continuously, as they do near straight up: a slightly tilted panel
-// does not rotate about its normal.
-RigidTransform panel_frame(const Vec3& normal, const Vec3& centre_m) {
-  if (!(normal.z() < 0.0)) return frame_looking_along(normal, centre_m);
-  return lamp_frame(normal, centre_m);
 }
 
 struct Placement {
@@ -187,7 +174,11 @@ Placement read_placement(const Settings& settings) {
                           ? read_direction_vector(settings)
                           : read_direction(settings, centre_m);
   if (layout != Layout::positions) {
-    const RigidTransform lab_from_array = panel_frame(normal, centre_m);
+    // For a panel that looks straight down it is the half turn about x. Near there the axes follow
+    // the direction continuously, as they do near straight up: a slightly tilted panel does not
+    // rotate about its normal.
+    const RigidTransform lab_from_array =
+        normal.z() < 0.0 ? lamp_frame(normal, centre_m) : frame_looking_along(normal, centre_m);
     // LEDs are numbered as seen in the lab: rows by rising y, rings counter-clockwise, also if the
     // array looks down. This is possible because every layout equals its mirror image.
     const double up = lab_from_array.direction(Vec3::UnitY()).y() < 0.0 ? -1.0 : 1.0;
@@ -282,21 +273,7 @@ std::vector<Key> led_array_keys() {
 }  // namespace
 
 SourceKind kind() {
-  return {"led_array",
-          "Equal LEDs in a grid, ring, hexagon or at given points",
-          make,
-          {{"layout", {"ring"}},
-           {"count", {int64_t{6}}},
-           {"ring_radius_m", {0.2}},
-           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-           {"aim", {"converging"}},
-           {"aim_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}},
-           {"total_power_W", {90.0}},
-           {"aperture_diameter_m", {0.03}},
-           {"profile", {"super_gaussian"}},
-           {"fwhm_deg", {3.0}},
-           {"order", {4.0}},
-           {"wavelength_nm", {730.0}}},
+  return {"led_array", "Equal LEDs in a grid, ring, hexagon or at given points", make,
           led_array_keys()};
 }
 

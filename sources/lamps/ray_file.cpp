@@ -11,7 +11,6 @@
 
 #include "core/numerics/vector_math.h"
 #include "core/text/format.h"
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 
 namespace photorque {
@@ -203,14 +202,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind kind() {
-  return {"ray_file",
-          "A lamp as a file of rays: IES TM-25, Zemax binary or LightTools text",
-          make,
-          {{"file", {"lamp.tm25ray"}},
-           {"power_W", {2.0}},
-           {"wavelength_nm", {730.0}},
-           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-           {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
+  return {"ray_file", "A lamp as a file of rays: IES TM-25, Zemax binary or LightTools text", make,
           joined({{source_key::name.with_default("ray_file"), key::file,
                    source_key::power.usually("the file's")},
                   {source_key::wavelength.usually("the file's"), source_key::spectral_fwhm},

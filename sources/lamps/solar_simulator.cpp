@@ -9,7 +9,6 @@
 
 #include "core/constants.h"
 #include "core/numerics/vector_math.h"
-#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 #include "sources/profiles/sampling.h"
 
@@ -90,14 +89,8 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind kind() {
-  return {"solar_simulator",
-          "A bundle of limited width and collimation that lights a round field",
+  return {"solar_simulator", "A bundle of limited width and collimation that lights a round field",
           make,
-          {{"footprint_diameter_m", {0.6}},
-           {"collimation_half_angle_deg", {2.0}},
-           {"nonuniformity", {0.05}},
-           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}},
-           {"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}},
           joined({{source_key::name.with_default("solar_simulator"),
                    source_key::position.meaning("middle of the field, lab axes"),
                    source_key::light_direction},

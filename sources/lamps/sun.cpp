@@ -15,8 +15,7 @@
 #include "core/constants.h"
 #include "core/numerics/vector_math.h"
 #include "core/text/parse.h"
-#include "raytrace/parallel_light.h"
-#include "sources/lamps/keys.h"
+#include "raytrace/emitter.h"
 #include "sources/lamps/settings.h"
 #include "sources/profiles/sampling.h"
 #include "sources/profiles/sun_shape.h"
@@ -183,10 +182,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind kind() {
-  return {"sun",
-          "Parallel light from a disc in the sky, of a given irradiance",
-          make,
-          {{"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}},
+  return {"sun", "Parallel light from a disc in the sky, of a given irradiance", make,
           joined({{source_key::name.with_default("sun"), source_key::light_direction},
                   sunlight_keys(),
                   {key::sun_shape.bringing({{key::angular_radius, key::limb_darkening},

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/constants.h"
 #include "core/text/parse.h"
 #include "sources/photometry/file.h"
 

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cmath>
 
-#include "core/constants.h"
 #include "core/text/parse.h"
 #include "sources/photometry/file.h"
 

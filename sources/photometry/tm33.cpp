@@ -6,7 +6,6 @@
 #include <pugixml.hpp>
 #include <set>
 
-#include "core/constants.h"
 #include "core/text/parse.h"
 #include "sources/photometry/file.h"
 

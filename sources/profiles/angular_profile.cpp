@@ -123,7 +123,7 @@ void AngularDistribution::rises(const std::array<uint32_t, ray_block>& bits,
     float fraction = part * (in_halo ? per_halo : per_core);
     fraction = fraction < smallest_fraction ? smallest_fraction : fraction;
     fraction = fraction > largest_fraction ? largest_fraction : fraction;
-    const InverseFlux::SinglePlace place = InverseFlux::place(fraction);
+    const auto place = InverseFlux::place(fraction);
     constexpr auto intervals = static_cast<uint32_t>(InverseFlux::intervals);
     interval[i] = place.interval + (in_halo ? intervals : 0);
     t[i] = place.t;

@@ -160,30 +160,25 @@ std::vector<Group> different_emitters(std::span<const Beam> beams) {
 }  // namespace
 
 Table beam_shape_table(std::span<const Beam> beams) {
-  const std::vector<Group> groups = different_emitters(beams);
-  Table table = Table::of("beam_shapes", "Angular shape of every source", {"source"});
-  std::vector<BeamShape> shapes;
-  for (const Group& group : groups) {
-    table.row().set("source", group.first->name);
-    shapes.push_back(describe(*group.first->emitter));
+  Table table =
+      Table::of("beam_shapes", "Angular shape of every source",
+                {"source", "beams", "power_each_W", "fwhm_deg", "full_width_tenth_deg",
+                 "half_angle_50_percent_deg", "half_angle_86_percent_deg",
+                 "half_angle_90_percent_deg", "flux_within_half_fwhm", "flux_within_fwhm"});
+  for (const Group& group : different_emitters(beams)) {
+    const BeamShape shape = describe(*group.first->emitter);
+    table.row()
+        .set("source", group.first->name)
+        .set("beams", group.beams)
+        .set("power_each_W", group.first->emitter->power_W())
+        .set("fwhm_deg", shape.fwhm_rad / degree_rad)
+        .set("full_width_tenth_deg", shape.full_width_tenth_rad / degree_rad)
+        .set("half_angle_50_percent_deg", shape.half_angle_50_rad / degree_rad)
+        .set("half_angle_86_percent_deg", shape.half_angle_86_rad / degree_rad)
+        .set("half_angle_90_percent_deg", shape.half_angle_90_rad / degree_rad)
+        .set("flux_within_half_fwhm", shape.within_half_fwhm)
+        .set("flux_within_fwhm", shape.within_fwhm);
   }
-  const auto add = [&](const std::string& name, const auto& value_of) {
-    std::vector<double> values;
-    for (size_t i = 0; i < groups.size(); ++i) values.push_back(value_of(i));
-    table.add(name, values);
-  };
-  const auto add_angle = [&](const std::string& name, double BeamShape::*angle_rad) {
-    add(name, [&](size_t i) { return shapes[i].*angle_rad / degree_rad; });
-  };
-  add("beams", [&](size_t i) { return groups[i].beams; });
-  add("power_each_W", [&](size_t i) { return groups[i].first->emitter->power_W(); });
-  add_angle("fwhm_deg", &BeamShape::fwhm_rad);
-  add_angle("full_width_tenth_deg", &BeamShape::full_width_tenth_rad);
-  add_angle("half_angle_50_percent_deg", &BeamShape::half_angle_50_rad);
-  add_angle("half_angle_86_percent_deg", &BeamShape::half_angle_86_rad);
-  add_angle("half_angle_90_percent_deg", &BeamShape::half_angle_90_rad);
-  add("flux_within_half_fwhm", [&](size_t i) { return shapes[i].within_half_fwhm; });
-  add("flux_within_fwhm", [&](size_t i) { return shapes[i].within_fwhm; });
   return table;
 }
 

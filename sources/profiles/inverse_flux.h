@@ -9,7 +9,10 @@
 #pragma once
 
 #include <bit>
+#include <concepts>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "sources/profiles/angular_profile.h"
@@ -28,27 +31,22 @@ class InverseFlux {
   // Table: four polynomial coefficients per interval, lowest power first.
   const std::vector<double>& coefficients() const { return coefficients_; }
 
-  // Position of a fraction of the flux in the table. For fractions in [smallest_fraction, 1).
-  struct Place {
-    uint64_t interval;
-    double t;  // ∈ [0, 1) along the interval
-  };
-  static Place place(double fraction_outside) {
-    const auto bits = std::bit_cast<uint64_t>(fraction_outside);
-    const uint64_t rest = (bits << interval_bits) & mantissa;
-    return {(bits >> shift) - first_knot, std::bit_cast<double>(rest | one) - 1.0};
-  }
-  struct SinglePlace {
-    uint32_t interval;
-    float t;  // ∈ [0, 1) along the interval
-  };
-  static SinglePlace place(float fraction_outside) {
-    const auto bits = std::bit_cast<uint32_t>(fraction_outside);
-    const uint32_t rest = (bits << interval_bits) & 0x007fffffu;
-    constexpr int single_shift = 23 - interval_bits;
-    constexpr uint32_t first =
-        std::bit_cast<uint32_t>(static_cast<float>(smallest_fraction)) >> single_shift;
-    return {(bits >> single_shift) - first, std::bit_cast<float>(rest | 0x3f800000u) - 1.0f};
+  // Position of a fraction of the flux in the table. For fractions in [smallest_fraction, 1), in
+  // single or double precision.
+  template <std::floating_point Real>
+  static auto place(Real fraction_outside) {
+    using Bits = std::conditional_t<std::is_same_v<Real, float>, uint32_t, uint64_t>;
+    struct Place {
+      Bits interval;
+      Real t;  // ∈ [0, 1) along the interval
+    };
+    constexpr int mantissa_bits = std::numeric_limits<Real>::digits - 1;
+    constexpr int shift = mantissa_bits - interval_bits;
+    constexpr Bits mantissa = (Bits{1} << mantissa_bits) - 1, one = std::bit_cast<Bits>(Real{1});
+    constexpr Bits first = std::bit_cast<Bits>(static_cast<Real>(smallest_fraction)) >> shift;
+    const auto bits = std::bit_cast<Bits>(fraction_outside);
+    const Bits rest = (bits << interval_bits) & mantissa;
+    return Place{(bits >> shift) - first, std::bit_cast<Real>(rest | one) - Real{1}};
   }
   static constexpr double smallest_fraction = 0x1p-33;  // half a step of a 32-bit fraction
   static constexpr int octaves = 33;
@@ -57,17 +55,16 @@ class InverseFlux {
 
   // Rise of the cone outside which this fraction of the flux, in [smallest_fraction, 1), lies.
   double rise(double fraction_outside) const {
-    const Place p = place(fraction_outside);
+    const auto p = place(fraction_outside);
     const double* c = &coefficients_[4 * p.interval];
     return c[0] + p.t * (c[1] + p.t * (c[2] + p.t * c[3]));
   }
 
  private:
-  static constexpr uint64_t mantissa = 0x000fffffffffffffull;
-  static constexpr uint64_t one = 0x3ff0000000000000ull;
-  static constexpr int shift = 52 - interval_bits;
-  static constexpr uint64_t first_knot = std::bit_cast<uint64_t>(smallest_fraction) >> shift;
-  static double knot(uint64_t k) { return std::bit_cast<double>((first_knot + k) << shift); }
+  static double knot(uint64_t k) {
+    constexpr int shift = 52 - interval_bits;
+    return std::bit_cast<double>(std::bit_cast<uint64_t>(smallest_fraction) + (k << shift));
+  }
 
   std::vector<double> coefficients_;
   double flux_ = 0.0;

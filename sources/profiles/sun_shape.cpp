@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/constants.h"
 #include "core/numerics/adaptive_quadrature.h"
 #include "core/numerics/root.h"
 

@@ -1,7 +1,6 @@
 // Sun shapes: radiance of the Sun over the angle from its centre, including the aureole.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "sources/profiles/sampling.h"

@@ -14,23 +14,14 @@ namespace {
 
 // Axes of the table's frame in the emitter's frame: z is the pole, and the azimuth counts from x.
 Mat3 emitter_from_pole(Pole pole) {
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
   Mat3 axes;
-  switch (pole) {
-    case Pole::vertical:  // azimuth from the beam towards +y
-      axes.col(0) = Vec3::UnitZ();
-      axes.col(1) = Vec3::UnitY();
-      axes.col(2) = Vec3::UnitX();
-      break;
-    case Pole::horizontal:  // azimuth from the beam towards +x
-      axes.col(0) = Vec3::UnitZ();
-      axes.col(1) = Vec3::UnitX();
-      axes.col(2) = Vec3::UnitY();
-      break;
-    case Pole::beam:
-      axes.col(0) = Vec3::UnitX();
-      axes.col(1) = -Vec3::UnitY();
-      axes.col(2) = Vec3::UnitZ();
-      break;
+  if (pole == Pole::beam) {
+    axes << x, -y, z;
+  } else if (pole == Pole::vertical) {
+    axes << z, y, x;  // azimuth from the beam towards +y
+  } else {
+    axes << z, x, y;  // azimuth from the beam towards +x
   }
   return axes;
 }

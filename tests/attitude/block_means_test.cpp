@@ -32,8 +32,8 @@ struct Tumbling {
   // Observation in blocks. Its noise is so small that an error of a milliarcsecond matters.
   Observation observed(size_t blocks) const {
     Observation seen = observe(recording, "tumbling", run.model.platform, blocks);
-    seen.noise.camera_rad = Vec3::Constant(1e-3 * arcsecond_rad);
-    seen.noise.gyro_rad_s = Vec3::Constant(1e-8);
+    seen.noise.set_levels(0, Vec3::Constant(1e-3 * arcsecond_rad));
+    seen.noise.set_levels(3, Vec3::Constant(1e-8));
     return seen;
   }
 };
@@ -85,14 +85,14 @@ TEST(BlockMeans, OfABodyThatTumblesArePredictedAsMeans) {
 TEST(BlockMeans, AreLookedAtNoMoreOftenThanTheirNoiseIsWorth) {
   const Tumbling body(160.0);
   Observation seen = body.observed(200);
-  seen.noise.camera_rad = Vec3::Constant(2000.0 * arcsecond_rad);
-  seen.noise.gyro_rad_s = Vec3::Constant(0.4);
+  seen.noise.set_levels(0, Vec3::Constant(2000.0 * arcsecond_rad));
+  seen.noise.set_levels(3, Vec3::Constant(0.4));
   const Largest two = largest_of(body, seen, body.run.initial);
   EXPECT_LT(two.attitude_arcsec, 5.0);
   EXPECT_LT(two.gyro_rad_s, 1e-4);
   EXPECT_GT(two.attitude_arcsec, 0.2);  // fewer than three
-  seen.noise.camera_rad = Vec3::Constant(10.0);
-  seen.noise.gyro_rad_s = Vec3::Constant(100.0);
+  seen.noise.set_levels(0, Vec3::Constant(10.0));
+  seen.noise.set_levels(3, Vec3::Constant(100.0));
   EXPECT_GT(largest_of(body, seen, body.run.initial).attitude_arcsec, 50.0);  // one
 }
 

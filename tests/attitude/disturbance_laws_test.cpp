@@ -2,6 +2,7 @@
 // test fails if the kind has no example here.
 #include <gtest/gtest.h>
 
+#include <gmock/gmock.h>
 #include <cmath>
 #include <map>
 #include <random>
@@ -12,6 +13,7 @@
 #include "core/files.h"
 #include "tests/attitude/disturbance_bench.h"
 #include "tests/files.h"
+#include "tests/refusal.h"
 
 namespace photorque {
 namespace {
@@ -102,9 +104,7 @@ std::vector<std::string> kind_names() {
   return names;
 }
 
-// The model in which a kind is tested: with an offset for kinds that need one, the field and a
-// command.
-AttitudeModel model_with(const std::string& kind) {
+AttitudeModel commanded_bench() {
   AttitudeModel model = bench_model();
   model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
                               .force_lab_N = {0.3, -0.2, 0.0},
@@ -113,6 +113,13 @@ AttitudeModel model_with(const std::string& kind) {
                               .led_current_A = 0.3,
                               .lamps_as_stated = 0.0,
                               .wheel = {0.0, {20.0, -10.0, 30.0}, {0.3, 0.2, -0.1}}});
+  return model;
+}
+
+// The model in which a kind is tested: with an offset for kinds that need one, the field and a
+// command.
+AttitudeModel model_with(const std::string& kind) {
+  AttitudeModel model = commanded_bench();
   // Forces act on sliding bodies.
   const DisturbanceKind* known = find_kind(kind);
   if (known != nullptr && is_force(known->screening.needs)) {
@@ -266,14 +273,7 @@ TEST_P(EveryDisturbance, DerivativesAgreeWithCentralDifferences) {
 // Derivatives with all disturbances at once: the torque of one may depend on changes of the field,
 // the centre of mass or the inertia by another.
 TEST(Disturbances, DerivativesAgreeWhenAllActTogether) {
-  AttitudeModel model = bench_model();
-  model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
-                              .force_lab_N = {0.3, -0.2, 0.0},
-                              .force_body_N = {0.1, 0.4, 0.0},
-                              .battery_current_A = 2.0,
-                              .led_current_A = 0.3,
-                              .lamps_as_stated = 0.0,
-                              .wheel = {0.0, {20.0, -10.0, 30.0}, {0.3, 0.2, -0.1}}});
+  AttitudeModel model = commanded_bench();
   for (const auto& [kind, entries] : examples()) model = with(model, kind, entries);
   std::mt19937_64 engine(11);
   const PlatformState state = random_state(model, engine);
@@ -387,14 +387,6 @@ TEST_P(EveryPotential, TorqueIsMinusItsSlope) {
   }
 }
 
-TEST_P(EveryDisturbance, IsDescribedInOneSentence) {
-  for (const DisturbanceKind& kind : all_disturbance_kinds()) {
-    if (kind.name != GetParam()) continue;
-    EXPECT_GT(kind.summary.size(), 15u);
-    EXPECT_NE(kind.summary.back(), '.');
-  }
-}
-
 TEST_P(EveryDisturbance, RejectsAnUnknownKey) {
   const auto all = examples();
   if (!all.contains(GetParam())) return;
@@ -404,14 +396,30 @@ TEST_P(EveryDisturbance, RejectsAnUnknownKey) {
                InputError);
 }
 
-TEST(GravityGradient, IsZeroOnASphere) {
-  AttitudeModel model = bench_model();
-  model.platform.inertia_kg_m2 = 0.15 * Mat3::Identity();
-  model = with(model, "gravity_gradient");
-  std::mt19937_64 engine(1);
-  for (int i = 0; i < 20; ++i) {
-    EXPECT_LT(torque_body_N_m(model, random_state(model, engine)).norm(), 1e-22);
+// Errors for kinds of disturbance that do not exist.
+
+TEST(Disturbances, UnknownKindIsOneClearLine) {
+  EXPECT_THAT(refusal_of([&] { make(bench_model(), "bearing_drug"); }),
+              testing::HasSubstr("bearing_drag"));
+}
+
+// A disturbance that sets the field, the rotation of the laboratory or the battery current for all
+// others may be used only once.
+TEST(Disturbances, ThatSetTheSameForAllAreRefusedTwice) {
+  const std::string cage = "{kind = 'helmholtz_cage', field_lab_T = [1e-5, 0, 0]}",
+                    orbit = "{kind = 'orbit', altitude_m = 5e5, inclination_deg = 50}",
+                    rotation = "{kind = 'earth_rotation'}",
+                    load = "{kind = 'power_balance', load_W = 10}";
+  const AttitudeModel model = bench_model();
+  const auto read = [&](const std::vector<std::string>& all) {
+    return read_disturbances(settings_of("disturbance = [" + joined_text(all, ", ") + "]"),
+                             context_of(model));
+  };
+  for (const auto& pair : std::vector<std::vector<std::string>>{
+           {cage, cage}, {cage, orbit}, {orbit, cage}, {rotation, rotation}, {load, load}}) {
+    EXPECT_THROW(read(pair), InputError);
   }
+  EXPECT_EQ(read({cage, rotation, load}).size(), 3u);
 }
 
 }  // namespace

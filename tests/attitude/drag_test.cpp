@@ -19,11 +19,6 @@ double rate_after(const AttitudeModel& model, double start_rad_s, double time_s)
       .rate_body_rad_s.z();
 }
 
-TEST(BearingDrag, DecaysExponentially) {
-  const AttitudeModel model = with(bench_model(), "bearing_drag", "coefficient_N_m_s = 1.5e-5");
-  EXPECT_NEAR(rate_after(model, 0.1, 20000) / (0.1 * std::exp(-1.5e-5 * 20000 / J)), 1.0, 1e-10);
-}
-
 TEST(BearingDrag, SocketAxisIsTheLabVertical) {
   const AttitudeModel model =
       with(bench_model(), "bearing_drag", "axial_N_m_s = 1e-5, transverse_N_m_s = 3e-5");

@@ -20,15 +20,6 @@ double torque_N_m(const AirPart& part, double rate_rad_s) {
   return air_coefficients(part, air).torque_N_m(rate_rad_s);
 }
 
-// The value of Schlichting and White for a disc wetted on both faces: C_M = 3.87/√Re on ½ρω²R⁵.
-TEST(ExternalAir, DiscHasTheTabulatedMomentCoefficient) {
-  const double R = 0.25, rate = 3.0;
-  const double reynolds = rate * R * R / air.kinematic_viscosity_m2_s();
-  const double tabulated_N_m =
-      3.87 / std::sqrt(reynolds) * 0.5 * air.density_kg_m3 * rate * rate * std::pow(R, 5);
-  EXPECT_NEAR(torque_N_m(disc(R), rate) / tabulated_N_m, 1.0, 1e-3);
-}
-
 TEST(ExternalAir, WithoutAirThereIsNoDrag) {
   const Air none{.density_kg_m3 = 0.0};
   AirPart part{.radius_m = 0.1,

@@ -226,15 +226,15 @@ TEST(Consistency, OfTheFilterOver100Runs) {
   const PropagationRun run = drawn_run();
   const EstimateStudy study = study_of(run, 100);
   const ConsistencyResult result = consistency_of(study, run, study.filter);
-  const std::vector<double> filtered = result.ensemble.nees_filtered();
-  const std::vector<double> smoothed = result.ensemble.nees_smoothed();
+  const std::vector<double> filtered = result.ensemble.filtered.nees;
+  const std::vector<double> smoothed = result.ensemble.smoothed.nees;
   const double error = std::sqrt(12.0 / 100.0);
   for (size_t row = 8; row < filtered.size(); row += 8) {
     EXPECT_NEAR(filtered[row], 6.0, 4.0 * error) << row;
     EXPECT_NEAR(smoothed[row], 6.0, 4.0 * error) << row;
   }
   EXPECT_GE(result.part_filtered, 0.85);
-  for (const InnovationSum* sum : {&result.ensemble.attitude(), &result.ensemble.gyro()}) {
+  for (const InnovationSum* sum : {&result.ensemble.attitude, &result.ensemble.gyro}) {
     EXPECT_NEAR(sum->per_number(), 1.0, 4.0 * std::sqrt(2.0 / sum->numbers));
   }
   // The smoother is better than the filter except at the end, where both are equal.
@@ -249,7 +249,7 @@ TEST(Consistency, IsLostWithTheWrongNoise) {
   study.nominal.sensors.gyro->noise_rad_s *= 0.75;
   const ConsistencyResult result = consistency_of(study, run, study.filter);
   EXPECT_LT(result.part_filtered, 0.3);
-  const InnovationSum& camera = result.ensemble.attitude();
+  const InnovationSum& camera = result.ensemble.attitude;
   EXPECT_GT(camera.per_number(), 1.0 + 10.0 * std::sqrt(2.0 / camera.numbers));
 }
 

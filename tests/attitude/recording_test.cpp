@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
@@ -134,6 +135,28 @@ TEST(Recording, RealFilesAreMendedAndEverythingIsCounted) {
                                   report.rows_without_time + report.malformed_rows);
 }
 
+// A row of zeros before the clock runs, and two rows after it was set. Three rows are a segment.
+TEST(Recording, SingleRowsBeyondAJumpOfTheClockAreLeftOut) {
+  const auto with = [](const std::string& before, const std::string& after) {
+    std::string text = "t_s,rate_rad_s\n" + before;
+    for (int i = 0; i < 30; ++i) text += std::to_string(1733.0 + 0.1 * i) + ",1\n";
+    return read(text + after);
+  };
+  const Recording zeros = with("0,0\n", ""), both = with("0,0\n", "9000,0\n9000.1,0\n");
+  for (const Recording& r : {zeros, both}) {
+    EXPECT_EQ(r.rows(), 30u);
+    EXPECT_EQ(r.report.rows_kept, 30);
+    EXPECT_EQ(cells_of(r, "rate_rad_s").size(), 30u);
+    EXPECT_EQ(cells_of(r, "rate_rad_s")[0], 1.0);
+    EXPECT_TRUE(r.report.gaps.empty());
+  }
+  EXPECT_EQ(zeros.report.isolated_rows, 1);
+  EXPECT_EQ(both.report.isolated_rows, 3);
+  EXPECT_THAT(both.report.text(), HasSubstr("3 rows at an end beyond a jump of the clock"));
+  EXPECT_EQ(with("0,0\n0.1,0\n0.2,0\n", "").report.isolated_rows, 0);
+  EXPECT_EQ(with("1710,0\n", "").report.isolated_rows, 0);  // less than ten times 2.9 s
+}
+
 TEST(Recording, ColumnsMayHaveOtherNamesAndUnits) {
   RecordingOptions options;
   options.columns = {{"t_ms", "Stamp"}, {"gyro_z_deg_s", "wz"}};
@@ -206,6 +229,77 @@ TEST(Recording, OutliersAreFoundAndNothingElse) {
   RecordingOptions keep;
   keep.remove_outliers = false;
   EXPECT_EQ(read(text, keep).report.outlier_cells, 0);
+}
+
+// A log of 2000 rows every 0.01 s, whose rate is read every `hold` rows (not necessarily a whole
+// number) with noise and held in between. A command changes in every seventh row, and an angle, if
+// there is one, in every row.
+std::string held_log(double hold, bool has_angle) {
+  Noise noise(3, 0.02);
+  std::string text = "t_s,rate_rad_s,command_z_N_m";
+  text += has_angle ? ",angle_rad\n" : "\n";
+  double rate = 0.0;
+  int readings = 0;
+  for (int i = 0; i < 2000; ++i) {
+    if (i >= hold * readings) {
+      rate = std::sin(0.02 * i) + noise();
+      ++readings;
+    }
+    std::vector<double> cells = {0.01 * i, rate, 1.0 * (i / 7)};
+    if (has_angle) cells.push_back(0.001 * i * i);
+    text += row_of(cells);
+  }
+  return text;
+}
+
+TEST(Recording, ReadingsHeldByTheLogAreReadOnce) {
+  for (const auto& [hold, rows] : {std::pair(2.0, 2), {3.0, 3}, {10.0 / 3.0, 3}, {7.0, 7}}) {
+    const Recording r = read(held_log(hold, true));
+    const auto readings = static_cast<int64_t>(std::ceil(2000.0 / hold));
+    EXPECT_EQ(r.report.held_readings, 2000 - readings) << hold;
+    EXPECT_EQ(r.report.rows_per_reading.at("rate_rad_s"), rows);
+    EXPECT_THAT(r.report.text(), HasSubstr("held readings left out"));
+    // The angle is read in every row.
+    EXPECT_EQ(r.report.rows_kept, 2000);
+    EXPECT_FALSE(is_empty(r, "angle_rad", 1));
+    // The first row of a reading has its time.
+    EXPECT_FALSE(is_empty(r, "rate_rad_s", 0));
+    EXPECT_TRUE(is_empty(r, "rate_rad_s", 1));
+    EXPECT_FALSE(is_empty(r, "rate_rad_s", static_cast<size_t>(std::ceil(hold))));
+  }
+}
+
+// The rows without a reading are omitted, except those that change a command.
+TEST(Recording, CommandsAreKeptBetweenHeldReadings) {
+  const Recording r = read(held_log(3.0, false));
+  EXPECT_EQ(r.report.held_readings, 1333);
+  EXPECT_EQ(r.report.rows_kept, static_cast<int64_t>(r.rows()));
+  for (size_t row = 0; row < r.rows(); ++row) {
+    const auto i = static_cast<int>(std::lround(r.time_s[row] / 0.01));
+    EXPECT_TRUE(i % 3 == 0 || i % 7 == 0) << i;
+    EXPECT_EQ(is_empty(r, "rate_rad_s", row), i % 3 != 0);
+    EXPECT_EQ(cells_of(r, "command_z_N_m")[row], i / 7);
+  }
+  EXPECT_EQ(r.rows(), 667u + 286u - 96u);
+}
+
+// Equal neighbours that are no held readings: an encoder that turns slowly and steadily, one that
+// swings, a body at rest, and coarse digits with noise. Commands are held by definition.
+TEST(Recording, ReadingsThatAreEqualByChanceAreKept) {
+  const std::function<double(int)> slow[] = {
+      [](int i) { return 0.001 * (i / 3); },
+      [](int i) { return 0.01 * std::round(100 * std::sin(0.003 * i)); },
+      [](int i) { return i < 1900 ? 0.5 : std::sin(0.1 * i); },
+      [noise = Noise(4)](int) mutable { return 0.5 * std::round(noise()); }};
+  for (const auto& angle_rad : slow) {
+    std::string text = "t_s,angle_rad,command_z_N_m\n";
+    for (int i = 0; i < 2000; ++i) {
+      text += row_of({0.01 * i, angle_rad(i), std::sin(0.1 * (i / 2))});
+    }
+    const Recording r = read(text);
+    EXPECT_EQ(r.report.held_readings, 0);
+    EXPECT_EQ(r.report.rows_kept, 2000);
+  }
 }
 
 // The first gyro saturates at 0.1 rad/s about x, reports exactly that about z at all times, and
@@ -367,6 +461,7 @@ TEST(Recording, RecordingsOfRealHardwareAreRead) {
     for (const auto& entry : std::filesystem::directory_iterator(folder / set)) {
       const Recording recording = read_recording(entry.path());
       EXPECT_GT(recording.report.rows_kept, 30);
+      EXPECT_EQ(recording.report.held_readings, 0) << entry.path();
       // At most a few repeated times and outliers.
       EXPECT_GT(recording.report.rows_kept, 0.98 * recording.report.rows_read) << entry.path();
       EXPECT_LT(recording.report.outlier_cells, 0.02 * 3 * recording.report.rows_read)

@@ -1,77 +1,15 @@
-// Sag of beams, lithium in batteries, and moving masses: the functions behind the disturbances.
+// Lithium in batteries, and moving masses: the functions behind the disturbances.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "attitude/disturbances/mass/battery.h"
 #include "attitude/disturbances/mass/moving_masses.h"
-#include "attitude/disturbances/mass/sag_compliance.h"
 #include "core/constants.h"
 #include "tests/attitude/settings_bench.h"
 
 namespace photorque {
 namespace {
-
-// ∫ y dm of a clamped beam with an end mass, per unit of gravity. The bending moment gives the
-// curvature, the slope and the deflection, each integrated by the trapezoidal rule.
-double beam_moment_by_integration(double l, double end_mass, double beam_mass, double EI) {
-  constexpr int n = 20000;
-  const double dx = l / n;
-  double slope = 0, y = 0, sum = 0;
-  const auto curvature = [&](double x) {
-    const double arm = l - x;
-    return (end_mass * arm + beam_mass / l * arm * arm / 2) / EI;
-  };
-  for (int i = 0; i < n; ++i) {
-    const double x = i * dx;
-    const double slope_next = slope + dx * 0.5 * (curvature(x) + curvature(x + dx));
-    const double y_next = y + dx * 0.5 * (slope + slope_next);
-    sum += beam_mass / l * dx * 0.5 * (y + y_next);
-    slope = slope_next;
-    y = y_next;
-  }
-  return sum + end_mass * y;
-}
-
-TEST(SagCompliance, DumbbellIsTheDeflectionOfItsBeams) {
-  const DumbbellArms arms{Vec3::UnitX(), 0.6, 2.5, 0.8, 900.0};
-  const Mat3 compliance = sag_compliance_s2(arms, 12.0);
-  const double expected = 2 * beam_moment_by_integration(0.6, 2.5, 0.8, 900.0) / 12.0;
-  EXPECT_NEAR(compliance(1, 1) / expected, 1.0, 1e-7);
-  EXPECT_NEAR(compliance(2, 2) / expected, 1.0, 1e-7);
-  EXPECT_NEAR(compliance(0, 0), 0.0, 1e-20);
-}
-
-TEST(SagCompliance, TabletopIsTheDeflectionOfItsBeams) {
-  const CounterbalanceBeams beams{0.25, 3.2, 300.0, 4};
-  const Mat3 compliance = sag_compliance_s2(beams, 7.0);
-  const double expected = 4 * beam_moment_by_integration(0.25, 0.0, 0.8, 300.0) / 7.0;
-  EXPECT_NEAR(compliance(0, 0) / expected, 1.0, 1e-7);
-  EXPECT_NEAR(compliance(1, 1) / expected, 1.0, 1e-7);
-  EXPECT_NEAR(compliance(2, 2), 0.0, 1e-20);
-}
-
-// The torque of the weights of the displaced masses, mass by mass: the arm tilted by θ bends in the
-// transverse direction by its compliance times g cos θ, and is balanced at θ = 0.
-TEST(SagCompliance, DumbbellTorqueIsTheWeightOfTheDisplacedMass) {
-  const DumbbellArms arms{Vec3::UnitX(), 0.6, 2.5, 0.8, 900.0};
-  const double moment = 2 * beam_moment_by_integration(0.6, 2.5, 0.8, 900.0);
-  for (const double tilt : {0.1, 0.5, 1.2}) {
-    // Transverse to the arm, the masses are displaced by moment·g·(1 − cos θ) from their balanced
-    // positions. The horizontal component is this times sin θ.
-    const double lever = moment * g * (1 - std::cos(tilt)) * std::sin(tilt);
-    EXPECT_NEAR(sag_torque_N_m(arms, tilt, g) / (lever * g), 1.0, 1e-6);
-  }
-}
-
-TEST(SagCompliance, TabletopTorquePeaksAtFortyFiveDegrees) {
-  const CounterbalanceBeams beams{0.25, 3.2, 300.0, 4};
-  const double peak = sag_torque_N_m(beams, pi / 4, g);
-  EXPECT_GT(peak, sag_torque_N_m(beams, pi / 4 - 0.01, g));
-  EXPECT_GT(peak, sag_torque_N_m(beams, pi / 4 + 0.01, g));
-  const double moment = 4 * beam_moment_by_integration(0.25, 0.0, 0.8, 300.0);
-  EXPECT_NEAR(peak / (0.5 * moment * g * g), 1.0, 1e-6);
-}
 
 TEST(Battery, LithiumFollowsFaraday) {
   EXPECT_NEAR(lithium_kg_C * 3600 * 1e3, 0.2589, 5e-5);  // g/Ah
@@ -79,8 +17,7 @@ TEST(Battery, LithiumFollowsFaraday) {
 }
 
 TEST(Battery, OpposedCellsCancel) {
-  const std::vector<BatteryCell> cells = {{{0.1, 0, 0}, {0.03, 0, 0}, 0.5},
-                                          {{-0.1, 0, 0}, {-0.03, 0, 0}, 0.5}};
+  const std::vector<BatteryCell> cells = {{{0.03, 0, 0}, 0.5}, {{-0.03, 0, 0}, 0.5}};
   EXPECT_EQ(com_shift_m_C(cells, 7.0).norm(), 0.0);
 }
 
@@ -90,12 +27,6 @@ MovingMass usual_mass() {
           .mass_kg = 0.25,
           .lead_m = 2e-3,
           .step_angle_rad = 1.8 * degree_rad};
-}
-
-TEST(MovingMasses, ReproduceThePaper) {
-  EXPECT_NEAR(com_resolution_m(usual_mass(), 7.0), 1.79e-7, 0.005e-7);
-  EXPECT_NEAR(horizontal_rounding_torque_N_m(usual_mass(), 0.0, g), 1.23e-5, 0.005e-5);
-  EXPECT_NEAR(horizontal_rounding_torque_N_m(usual_mass(), pi / 2, g), 0.0, 1e-20);
 }
 
 // A full turn of the screw moves the mass by its lead.

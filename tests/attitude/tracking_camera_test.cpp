@@ -195,8 +195,7 @@ TEST(AttitudeCovariance, OfTheStatedBoardAndLensIsThePapers) {
   const TrackingCamera camera = cross_camera();
   const PlaneErrors errors = plane_errors(camera, *attitude_covariance_lab_rad2(camera, {}));
   EXPECT_NEAR(errors.in_plane_rad / arcsecond_rad, 12.0, 1.0);
-  EXPECT_NEAR(errors.across_rad[0] / arcsecond_rad, 37.0, 2.0);
-  EXPECT_NEAR(errors.across_rad[1] / arcsecond_rad, 37.0, 2.0);
+  EXPECT_NEAR(errors.out_of_plane_rad / arcsecond_rad, 37.0, 2.0);
 }
 
 // Equal errors s of all images along both axes: J⁺ J⁺ᵀ s², the formula for noise of this size.

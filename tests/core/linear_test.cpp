@@ -21,17 +21,6 @@ TEST(Linear, LeastSquaresOfUndeterminedSystemsAreShortest) {
   EXPECT_NEAR(fit.solution(1), 1.0, 1e-15);
 }
 
-// The line through (0, 1), (1, 3), (2, 4), (3, 4): 1.5 + 1 x.
-TEST(Linear, LeastSquaresOfALine) {
-  MatrixXd A(4, 2), b(4, 1);
-  A << 1, 0, 1, 1, 1, 2, 1, 3;
-  b << 1, 3, 4, 4;
-  const LeastSquares fit = least_squares(A, b);
-  EXPECT_EQ(fit.rank, 2);
-  EXPECT_NEAR(fit.solution(0), 1.5, 1e-14);
-  EXPECT_NEAR(fit.solution(1), 1.0, 1e-14);
-}
-
 TEST(Linear, PivotsBelowTheThresholdCountAsZero) {
   MatrixXd A = MatrixXd::Identity(2, 2);
   A(1, 1) = 1e-4;

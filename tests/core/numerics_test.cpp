@@ -61,16 +61,6 @@ TEST(GaussLegendre, RulesIntegratePowersUpToTheirDegree) {
   }
 }
 
-// The rule of eight points is known twice: as a table and by iteration.
-TEST(GaussLegendre, TableAndIterationAgree) {
-  const auto rule = gauss_legendre(8);
-  for (size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(rule[4 + i].x, gauss_8.node[i], 2e-16);
-    EXPECT_NEAR(rule[3 - i].x, -gauss_8.node[i], 2e-16);
-    EXPECT_NEAR(rule[4 + i].weight, gauss_8.weight[i], 1e-15);
-  }
-}
-
 TEST(Chebyshev, CellMeansOfAPolynomialAreExact) {
   const size_t n = 6, cells = 5;
   const auto f = [](double x) { return 1 - 3 * x + 2 * x * x * x - 7 * std::pow(x, 5); };

@@ -34,6 +34,11 @@ TEST(Text, CellsAreOneMoreThanSeparators) {
   EXPECT_THAT(cells_of(""), ElementsAre(""));
 }
 
+TEST(Text, NamesBetweenBlanksKeepTheirUnits) {
+  EXPECT_THAT(names_between_blanks("Time (s)  U / V I in A \"T [deg C]\" x"),
+              ElementsAre("Time (s)", "U / V", "I in A", "T [deg C]", "x"));
+}
+
 TEST(Text, WordsAreNeverEmpty) {
   EXPECT_THAT(words_of("  a\tb  c "), ElementsAre("a", "b", "c"));
   EXPECT_THAT(words_of("(1, 2,3)", " (),"), ElementsAre("1", "2", "3"));

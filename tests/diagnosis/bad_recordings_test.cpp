@@ -11,6 +11,7 @@
 #include "attitude/observation/observation.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/attitude/recorded_data.h"
 #include "tests/files.h"
 #include "tests/refusal.h"
 
@@ -51,11 +52,6 @@ TEST(BadRecording, WithHardlyAnyAttitudeIsRefused) {
   EXPECT_EQ(complaint_of(repeated_row("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 20)), "");
 }
 
-TEST(BadRecording, QuaternionsWithoutLengthAreNoAttitude) {
-  EXPECT_THAT(complaint_of(repeated_row("t_s,q_w,q_x,q_y,q_z", "0,0,0,0", 200)),
-              testing::HasSubstr("0 complete"));
-}
-
 // A clock that was set to another epoch while it recorded; a pause as long as what was recorded is
 // none.
 TEST(BadRecording, ClockJumpsAreReportedWithTheirTimes) {
@@ -68,6 +64,19 @@ TEST(BadRecording, ClockJumpsAreReportedWithTheirTimes) {
   EXPECT_NO_THROW(refuse_jump_of_clock(with_pause(20.0), "run.csv"));
   EXPECT_THAT(refusal_of([&] { refuse_jump_of_clock(with_pause(1e9), "run.csv"); }),
               testing::HasSubstr("t_s: found nothing from t_s = 9.9 to 1000000010"));
+}
+
+// A first row of zeros, before the clock runs, is left out and counted. The other rows are used.
+TEST(BadRecording, RowsBeyondAJumpOfTheClockAreCounted) {
+  std::ostringstream out;
+  out << "t_s,rate_rad_s\n0,0\n";
+  for (int i = 0; i < 30; ++i) out << 1733.1 + 0.1 * i << ",1\n";
+  const Recording r = read_recording(test_file("zeros.csv", out.str()));
+  EXPECT_NO_THROW(refuse_jump_of_clock(r, "zeros.csv"));
+  const DataQuality quality = quality_of({{"zeros.csv", r}}, {}, {});
+  EXPECT_EQ(quality.rejected.at("isolated_row"), 1);
+  EXPECT_EQ(quality.used, 30);
+  EXPECT_EQ(quality.rows, 31);
 }
 
 // 200 rows of a platform whose rate is read as 0.05 rad/s about its vertical axis.

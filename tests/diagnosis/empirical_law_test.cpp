@@ -8,7 +8,6 @@
 #include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
 #include "diagnosis/attitude/effects/scan.h"
-#include "diagnosis/attitude/empirical_torque.h"
 #include "diagnosis/attitude/findings.h"
 #include "diagnosis/improved.h"
 #include "scenes/experiment/toml.h"
@@ -52,12 +51,12 @@ Fitted fitted(unsigned seed, const Extra& extra, const std::string& label) {
   Fitted f;
   f.runs = {observe(seen.recording, seen.name)};
   f.all = all_candidates(nominal, f.runs);
-  const auto at = std::ranges::find(f.all.list, label, &Candidate::label);
+  const auto at = std::ranges::find(f.all.list, label, &Candidate::name);
   if (at == f.all.list.end()) throw std::runtime_error("no candidate " + label);
   const Trial parent = nominal_trial(fit_nominal(nominal, f.runs), f.all);
   const std::vector<Start> starts = starts_of(*at, parent, f.runs, f.runs, {}, {});
   f.trial =
-      extend(parent, f.all, static_cast<size_t>(at - f.all.list.begin()), starts.front(), f.runs);
+      f.all.extend(parent, static_cast<size_t>(at - f.all.list.begin()), starts.front(), f.runs);
   return f;
 }
 

@@ -81,6 +81,27 @@ TEST(GuessedCurve, MayEndInWhatAMeterMade) {
   EXPECT_THAT(refusal(log), HasSubstr("not a log over time"));
 }
 
+// A wrong unit, and a dark curve beside the one in light. The proposed names are accepted.
+TEST(GuessedCurve, IsNamedByTheCommandOfARefusal) {
+  std::string typo = "V(I), I(A)\n", lit = ",S1_V_D,S1_J_D,S1_V_L,S1_J_L\n";
+  for (int i = 0; i <= 30; ++i) {
+    const double volts = 0.02 * i, amperes = 0.03 - 1e-11 * std::exp(volts / 0.0275);
+    typo += printed("%.2f,%.6f\n", volts, amperes);
+    lit += printed("%d,%.2f,%.6f,%.2f,%.6f\n", i, volts, amperes - 0.03, volts, amperes);
+  }
+  const auto guess = [](const fs::path& file, const std::vector<std::string>& header) {
+    return guess_experiment({file}, testing::TempDir(), {.header = header});
+  };
+  const fs::path first = test_file("typo.csv", typo), second = test_file("lit.csv", lit);
+  EXPECT_THAT(refusal_of([&] { guess(first, {}); }),
+              AllOf(HasSubstr("the unit \"i\""), HasSubstr("--columns voltage_V,current_A (")));
+  EXPECT_THAT(guess(first, {"voltage_V", "current_A"}), HasSubstr("[module]"));
+  EXPECT_THAT(refusal_of([&] { guess(second, {}); }),
+              HasSubstr("--columns column_1,column_2,column_3,voltage_V,current_A ("));
+  EXPECT_THAT(guess(second, {"column_1", "column_2", "column_3", "voltage_V", "current_A"}),
+              HasSubstr("[module]"));
+}
+
 // Curves of one diode with n = 1.3. The numbers of cells: STM6-40/36 at 51 °C and STP6-120/36 at
 // 55 °C (36 cells), PWP201 at 45 °C (36), SpectraVolt 100M36S (36), a roof of 16 modules of 72
 // cells.

@@ -49,133 +49,97 @@ class Headers : public testing::Test {
   }
 };
 
-struct Expected {
-  const char *header, *stem;
+struct Meaning {
+  const char* stem;
   double to_SI;
-
-  void expect_of(const std::string& channel) const {
-    EXPECT_EQ(unit_of_key(channel).stem, stem) << header;
-    EXPECT_NEAR(unit_of_key(channel).to_SI, to_SI, 1e-12) << header;
-  }
+  std::vector<const char*> headers;
 };
+
+void expect_meaning(const Meaning& meaning, const char* header, const std::string& channel) {
+  EXPECT_EQ(unit_of_key(channel).stem, meaning.stem) << header;
+  EXPECT_NEAR(unit_of_key(channel).to_SI, meaning.to_SI, 1e-12) << header;
+}
 
 constexpr double turn = 2.0 * pi, degree = pi / 180.0;
 
 TEST_F(Headers, OfAnglesAndRates) {
-  const Expected table[] = {
-      {"Winkelgeschwindigkeit / rad/s", "rate", 1.0},
-      {"Winkel / °", "angle", degree},
-      {"Drehzahl [1/min]", "rate", turn / 60.0},
-      {"rpm", "rate", turn / 60.0},
-      {"w [1/min]", "rate", turn / 60.0},
-      {"angolo (gradi)", "angle", degree},
-      {"vitesse angulaire (rad/s)", "rate", 1.0},
-      {"phi/rad", "angle", 1.0},
-      {"n [1/min]", "rate", turn / 60.0},
-      {"n / min⁻¹", "rate", turn / 60.0},
-      {"n / s⁻¹", "rate", turn},
-      {"θ (deg)", "angle", degree},
-      {"ω (rad/s)", "rate", 1.0},
-      {"ω / s⁻¹", "rate", 1.0},
-      {"ω in rad·s⁻¹", "rate", 1.0},
-      {"ω / (rad/s)", "rate", 1.0},
-      {"ω (Hz)", "rate", turn},
-      {"θ̇ [rad/s]", "rate", 1.0},
-      {"dθ/dt (rad/s)", "rate", 1.0},
-      {"theta_dot (deg/s)", "rate", degree},
-      {"Absolute (rad/s)", "rate_magnitude", 1.0},
-      {"|ω| (rad/s)", "rate_magnitude", 1.0},
-      {"Auslenkung (rad)", "angle", 1.0},
-      {"Amplitude (rad)", "angle", 1.0},
-      {"position (rad)", "angle", 1.0},
-      {"Ausschlag [°]", "angle", degree},
-      {"angle (rev)", "angle", turn},
-      {"encoder [turns]", "angle", turn},
-      {"Drehwinkel in Umdrehungen", "angle", turn},
-      {"speed (rev/s)", "rate", turn},
-      {"rate_mrad_s", "rate", 1e-3},
-      {"gyro_x_mdps", "gyro_x", 1e-3 * degree},
-      {"omega (mrad/s)", "rate", 1e-3},
-      {"omega_mrads", "rate", 1e-3},
-      {"angle_mdeg", "angle", 1e-3 * degree},
-      {"Winkel (µrad)", "angle", 1e-6},
-      {"omega_s", "rate", 1.0},
-      {"ωₓ (rad/s)", "gyro_x", 1.0},
-      {"ωᵧ [°/s]", "gyro_y", degree},
-      {"ωᶻ (rad/s)", "gyro_z", 1.0},
-      {"hoek (graden)", "angle", degree},
-      {"kąt [deg]", "angle", degree},
-      {"speed_mm_s", "velocity_x", 1e-3},
-      {"v_m_s", "velocity_x", 1.0},
-      {"α [°]", "angle", degree},
-      {"wheel_rpm", "rate", turn / 60.0},
-      {"drum_rpm", "rate", turn / 60.0},
-      {"Drehzahl [U/min]", "rate", turn / 60.0},
-      {"Umdrehungen pro Minute", "rate", turn / 60.0},
-      {"revolutions per minute", "rate", turn / 60.0},
-      {"régime (tr/min)", "rate", turn / 60.0},
-      {"Vitesse de rotation (tours/s)", "rate", turn},
-      {"fréquence de rotation (tr/s)", "rate", turn},
-      {"velocità di rotazione (giri/min)", "rate", turn / 60.0},
-      {"velocità angolare (rad/s)", "rate", 1.0},
-      {"velocidad angular [rad/s]", "rate", 1.0},
-      {"Velocidad de giro (rev/min)", "rate", turn / 60.0},
-      {"velocidade angular (graus por segundo)", "rate", degree},
-      {"Ángulo (grados)", "angle", degree},
-      {"ângulo [graus]", "angle", degree},
-      {"posición angular (°)", "angle", degree},
-      {"position angulaire (degrés)", "angle", degree},
-      {"Winkel in Grad", "angle", degree},
-      {"Drehwinkel φ / mrad", "angle", 1e-3},
-      {"Winkel phi_1 / rad", "angle", 1.0},
-      {"phi(t) / °", "angle", degree},
-      {"angleDeg", "angle", degree},
-      {"Speed RPM", "rate", turn / 60.0},
-      {"Spin rate (rps)", "rate", turn},
-      {"omega_rads", "rate", 1.0},
-      {"angular rate (°/s)", "rate", degree},
-      {"Angular velocity around z-axis (deg/s)", "gyro_z", degree},
-      {"GyroX [dps]", "gyro_x", degree},
-      {"rotation rate y (rad/s)", "gyro_y", 1.0},
-      {"Gierrate [°/s]", "gyro_z", degree},
-      {"yaw (deg/s)", "gyro_z", degree},
-      {"q (deg/s)", "gyro_y", degree},
-      {"Neigung (°)", "tilt", degree},
-      {"Rollwinkel [°]", "roll", degree},
-      {"heading (deg)", "yaw", degree},
-      {"Winkel [\xb0]", "angle", degree},  // Latin-1
-      {"Geschwindigkeit (m/s)", "velocity_x", 1.0},
-      {"speed km/h", "velocity_x", 1.0 / 3.6},
-      {"Vy (cm/s)", "velocity_y", 0.01},
-      {"Distance (cm)", "x", 0.01},
-      {"Abstand / mm", "x", 1e-3},
-      {"Position(m)", "x", 1.0},
+  // 0xb0: the degree sign of Latin-1.
+  const Meaning table[] = {
+      {"rate",
+       1.0,
+       {"Winkelgeschwindigkeit / rad/s", "vitesse angulaire (rad/s)", "ω (rad/s)", "ω / s⁻¹",
+        "ω in rad·s⁻¹", "ω / (rad/s)", "θ̇ [rad/s]", "dθ/dt (rad/s)", "omega_s",
+        "velocità angolare (rad/s)", "velocidad angular [rad/s]", "omega_rads"}},
+      {"angle",
+       degree,
+       {"Winkel / °", "angolo (gradi)", "θ (deg)", "Ausschlag [°]", "hoek (graden)", "kąt [deg]",
+        "α [°]", "Ángulo (grados)", "ângulo [graus]", "posición angular (°)",
+        "position angulaire (degrés)", "Winkel in Grad", "phi(t) / °", "angleDeg",
+        "Winkel [\xb0]"}},
+      {"rate",
+       turn / 60.0,
+       {"Drehzahl [1/min]", "rpm", "w [1/min]", "n [1/min]", "n / min⁻¹", "wheel_rpm", "drum_rpm",
+        "Drehzahl [U/min]", "Umdrehungen pro Minute", "revolutions per minute", "régime (tr/min)",
+        "velocità di rotazione (giri/min)", "Velocidad de giro (rev/min)", "Speed RPM"}},
+      {"angle",
+       1.0,
+       {"phi/rad", "Auslenkung (rad)", "Amplitude (rad)", "position (rad)", "Winkel phi_1 / rad"}},
+      {"rate",
+       turn,
+       {"n / s⁻¹", "ω (Hz)", "speed (rev/s)", "Vitesse de rotation (tours/s)",
+        "fréquence de rotation (tr/s)", "Spin rate (rps)"}},
+      {"rate",
+       degree,
+       {"theta_dot (deg/s)", "velocidade angular (graus por segundo)", "angular rate (°/s)"}},
+      {"rate_magnitude", 1.0, {"Absolute (rad/s)", "|ω| (rad/s)"}},
+      {"angle", turn, {"angle (rev)", "encoder [turns]", "Drehwinkel in Umdrehungen"}},
+      {"rate", 1e-3, {"rate_mrad_s", "omega (mrad/s)", "omega_mrads"}},
+      {"gyro_x", 1e-3 * degree, {"gyro_x_mdps"}},
+      {"angle", 1e-3 * degree, {"angle_mdeg"}},
+      {"angle", 1e-6, {"Winkel (µrad)"}},
+      {"gyro_x", 1.0, {"ωₓ (rad/s)"}},
+      {"gyro_y", degree, {"ωᵧ [°/s]", "q (deg/s)"}},
+      {"gyro_z", 1.0, {"ωᶻ (rad/s)"}},
+      {"velocity_x", 1e-3, {"speed_mm_s"}},
+      {"velocity_x", 1.0, {"v_m_s", "Geschwindigkeit (m/s)"}},
+      {"angle", 1e-3, {"Drehwinkel φ / mrad"}},
+      {"gyro_z",
+       degree,
+       {"Angular velocity around z-axis (deg/s)", "Gierrate [°/s]", "yaw (deg/s)"}},
+      {"gyro_x", degree, {"GyroX [dps]"}},
+      {"gyro_y", 1.0, {"rotation rate y (rad/s)", "wy"}},
+      {"tilt", degree, {"Neigung (°)"}},
+      {"roll", degree, {"Rollwinkel [°]"}},
+      {"yaw", degree, {"heading (deg)"}},
+      {"velocity_x", 1.0 / 3.6, {"speed km/h"}},
+      {"velocity_y", 0.01, {"Vy (cm/s)"}},
+      {"x", 0.01, {"Distance (cm)"}},
+      {"x", 1e-3, {"Abstand / mm"}},
+      {"x", 1.0, {"Position(m)"}},
+      {"accel_x", 1.0, {"accX"}},
   };
-  for (const Expected& expected : table) {
-    expected.expect_of(channels(std::string("t_s;") + expected.header).at(1));
+  for (const Meaning& meaning : table) {
+    for (const char* header : meaning.headers) {
+      expect_meaning(meaning, header, channels(std::string("t_s;") + header).at(1));
+    }
   }
 }
 
 TEST_F(Headers, OfTimes) {
-  const Expected table[] = {{"Zeit t / s", "t", 1.0},
-                            {"t/s", "t", 1.0},
-                            {"t / min", "t", 60.0},
-                            {"t [min]", "t", 60.0},
-                            {"Time ( s )", "t", 1.0},
-                            {"Zeit/ms", "t", 1e-3},
-                            {"Timestamp (µs)", "t", 1e-6},
-                            {"temps (ms)", "t", 1e-3},
-                            {"Tiempo [seg]", "t", 1.0},
-                            {"Tempo (secondi)", "t", 1.0},
-                            {"tempo em minutos", "t", 60.0},
-                            {"timeMs", "t", 1e-3},
-                            {"Elapsed Time (h)", "t", 3600.0},
-                            {"TimeSinceFirstFrame(s)", "t", 1.0},
-                            {"tijd (s)", "t", 1.0},
-                            {"čas [ms]", "t", 1e-3},
-                            {"vrijeme / min", "t", 60.0}};
-  for (const Expected& expected : table) {
-    expected.expect_of(channels(expected.header + std::string(";rate_rpm")).at(0));
+  const Meaning table[] = {
+      {"t",
+       1.0,
+       {"Zeit t / s", "t/s", "Time ( s )", "Tiempo [seg]", "Tempo (secondi)",
+        "TimeSinceFirstFrame(s)", "tijd (s)"}},
+      {"t", 60.0, {"t / min", "t [min]", "tempo em minutos", "vrijeme / min"}},
+      {"t", 1e-3, {"Zeit/ms", "temps (ms)", "timeMs", "čas [ms]"}},
+      {"t", 1e-6, {"Timestamp (µs)"}},
+      {"t", 3600.0, {"Elapsed Time (h)"}},
+  };
+  for (const Meaning& meaning : table) {
+    for (const char* header : meaning.headers) {
+      expect_meaning(meaning, header, channels(header + std::string(";rate_rpm")).at(0));
+    }
   }
 }
 
@@ -226,6 +190,20 @@ TEST_F(Headers, OfUnknownUnitsAreRefused) {
               HasSubstr("s, ms, µs, min or h"));
   // One column of the quantity in a known unit is enough.
   EXPECT_EQ(channels("t_s;angle (raw);angle (deg)").at(2), "angle_deg");
+}
+
+// A gain, a counter or a flag beside a motion is left out with a note. A gyro axis is not.
+TEST_F(Headers, OfUnknownUnitsBesideAMotionAreLeftOut) {
+  std::string text = "%t [ms]\tPosition [rad]\tDerivative Gain [Kd]\tSpeed flag [bool]\n";
+  for (int i = 0; i < 40; ++i) text += printed("%d\t%.4f\t0.5\t1\n", 20 * i, 0.1 * i);
+  const std::string guessed = guess_experiment({test_file("gains.txt", text)}, ".");
+  EXPECT_THAT(guessed, AllOf(HasSubstr("CONFIRM: the column \"Derivative Gain [Kd]\" is left out"),
+                             HasSubstr("angle_rad = \"Position [rad]\"")));
+  EXPECT_THAT(refusal_of([&] { channels("t_s;gyro_x_rad_s;gyro_y [foo]"); }),
+              HasSubstr("--columns t_s,gyro_x_rad_s,gyro_y_rad_s ("));
+  EXPECT_THAT(refusal_of([&] { channels("t_s;lux;speed [Kd];flag"); }),
+              AllOf(HasSubstr("the unit \"Kd\""),
+                    HasSubstr("--columns t_s,column_2,rate_rad_s,column_4 (")));
 }
 
 TEST_F(Headers, StateTheirUnitOrAreMarked) {
@@ -519,6 +497,24 @@ TEST(Guess, FilesThatCannotBeReadNameTheCure) {
   EXPECT_THAT(refusal(std::string("\xff\xfet\0_\0s\0", 8)),
               AllOf(HasSubstr("UTF-16"), HasSubstr("iconv -f UTF-16")));
   EXPECT_THAT(refusal("nothing here\n"), HasSubstr("no rows of numbers"));
+  EXPECT_THAT(refusal("2.6\n-61.2\n-3.1\n63.2\n"), HasSubstr("--columns angle_deg --rate-Hz 10"));
+  EXPECT_THAT(refusal("0.26\n-0.62\n0.31\n"), HasSubstr("--columns angle_rad --rate-Hz 10"));
+  EXPECT_THAT(refusal("0,1,2,3,4,5,6,7,8\n1,1,2,3,4,5,6,7,8\n"),
+              HasSubstr("--columns t_s,column_2,column_3,column_4,column_5,column_6,column_7,"
+                        "column_8,column_9 ("));
+  EXPECT_THAT(refusal_of([&] {
+                guess_columns(test_file("five.csv", "a,b,c,d,e\n0,1,2,3,4\n1,2,3,4,5\n"),
+                              {.header = {"t_s", "angle_rad"}});
+              }),
+              HasSubstr("as many names as the file has columns: 5"));
+  EXPECT_THAT(refusal_of([&] {
+                guess_experiment({test_file("lamp.ies",
+                                            "IESNA:LM-63-1995\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n"
+                                            "1 1 50\n0 45 90\n0\n100 50 0\n")},
+                                 ".");
+              }),
+              AllOf(HasSubstr("a lamp file (IESNA:LM-63-1995)"), HasSubstr("kind = \"ies\""),
+                    Not(HasSubstr("--columns"))));
   EXPECT_THAT(
       refusal("speed\n29.1\n28.8\n28.6\n"),
       AllOf(HasSubstr("one column of numbers"), HasSubstr("--columns rate_rad_s --rate-Hz 10")));

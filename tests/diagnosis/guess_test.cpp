@@ -230,47 +230,6 @@ TEST(Guess, ASensorWithAnotherMountingIsReported) {
   EXPECT_THAT(d.warnings.front(), HasSubstr("their principal moments agree"));
 }
 
-TEST(Guess, ColumnsByTheirNames) {
-  const std::string header = "Time (s),Gyroscope x (deg/s),wy,omega_z [rad/s],accX,temp,q0";
-  const fs::path file = test_file(
-      "names.csv", "made by a phone\n" + header + "\n0,1,2,3,4,5,6\n" + "0.01,1,2,3,4,5,6\n");
-  std::vector<std::string> channels;
-  std::vector<bool> sure;
-  for (const GuessedColumn& c : guess_columns(file)) {
-    channels.push_back(c.channel);
-    sure.push_back(c.is_sure);
-  }
-  EXPECT_THAT(channels, ElementsAre("t_s", "gyro_x_deg_s", "gyro_y_rad_s", "gyro_z_rad_s",
-                                    "accel_x_m_s2", "", "q_w"));
-  EXPECT_TRUE(sure[1]);
-  EXPECT_FALSE(sure[2]);  // no unit in its name
-}
-
-// The experiment that is guessed of a wheel names its effects, in words of another maker.
-TEST(Guess, AWheelIsDiagnosedByItsGuess) {
-  constexpr double dry = 0.01, form = 1.2e-4, start_rad_s = 30.0;
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> noise(0.0, 0.003);
-  std::string text = "Time (s),Angular speed (deg/s),Battery\n";
-  for (int i = 0; i < 1200; ++i) {
-    const double unit = std::sqrt(dry / form);
-    // As in machines_test.cpp: I ω' = −τ − k ω² by separation.
-    const double rate =
-        unit * std::tan(std::atan(start_rad_s / unit) - std::sqrt(dry * form) * 0.25 * i);
-    text += std::to_string(0.25 * i) + "," + std::to_string((rate + noise(random)) / degree_rad) +
-            ",12\n";
-  }
-  const fs::path file = test_file("wheel.csv", text);
-  const std::string toml = guess_experiment({file}, file.parent_path());
-  EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"one_axis\""),
-                          HasSubstr("rate_deg_s = \"Angular speed (deg/s)\""),
-                          HasSubstr("Unused columns: Battery"), Not(HasSubstr("[[disturbance]]"))));
-  const Settings root = settings_in(toml);
-  const Recording recording = read_recording(file, read_recording_options(root.table("recording")));
-  const Diagnosis d = diagnose(read_attitude_model(root), {{"wheel.csv", recording}}, {});
-  EXPECT_THAT(kinds_of(d), testing::UnorderedElementsAre("dry_friction", "air_pressure_drag"));
-}
-
 std::string angles_text(const std::vector<double>& angle_rad, double interval_s) {
   std::string text = "t_s,angle_rad\n";
   for (size_t i = 0; i < angle_rad.size(); ++i) {
@@ -384,6 +343,15 @@ TEST(Guess, OneCoordinateOrASpeedIsAlongALine) {
       AllOf(HasSubstr("topology = \"planar\""), HasSubstr("velocity_x_km_h = \"speed (km/h)\"")));
 }
 
+// The guess of this file has one effect: a spring of this stiffness, to a part of it.
+void expect_spring(const fs::path& file, double stiffness, double part) {
+  const Settings guessed = settings_in(guess_experiment({file}, "."));
+  const std::vector<Settings> effects = guessed.tables("disturbance");
+  ASSERT_EQ(effects.size(), 1U);
+  EXPECT_EQ(effects[0].text("kind"), "sliding_spring");
+  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, part * stiffness);
+}
+
 // x = x₀ + a e^(−γt) cos ωt has the stiffness ω² + γ² for a unit mass. A body between cushions has
 // no spring.
 TEST(Guess, AWeightThatOscillatesHangsOnASpring) {
@@ -397,12 +365,8 @@ TEST(Guess, AWeightThatOscillatesHangsOnASpring) {
     spring += printed("%.4f,%.5f\n", t, middle_m + x + noise());
     cushions += printed("%.4f,%.5f\n", t, std::abs(phase) + noise());
   }
-  const Settings guessed = settings_in(guess_experiment({test_file("spring.csv", spring)}, "."));
-  const std::vector<Settings> effects = guessed.tables("disturbance");
-  ASSERT_EQ(effects.size(), 1U);
-  EXPECT_EQ(effects[0].text("kind"), "sliding_spring");
   const double stiffness = omega_rad_s * omega_rad_s + damping_1_s * damping_1_s;
-  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, 0.03 * stiffness);
+  expect_spring(test_file("spring.csv", spring), stiffness, 0.03);
   EXPECT_THAT(guess_experiment({test_file("brief.csv", brief)}, "."), HasSubstr("sliding_spring"));
   EXPECT_THAT(guess_experiment({test_file("cushions.csv", cushions)}, "."),
               Not(HasSubstr("sliding_spring")));
@@ -421,12 +385,8 @@ TEST(Guess, NoiseIsNoSpring) {
   }
   EXPECT_THAT(guess_experiment({test_file("white.csv", white)}, "."),
               Not(HasSubstr("sliding_spring")));
-  const Settings guessed =
-      settings_in(guess_experiment({test_file("rests.csv", seismometer)}, "."));
-  const std::vector<Settings> effects = guessed.tables("disturbance");
-  ASSERT_EQ(effects.size(), 1U);
   const double stiffness = omega_rad_s * omega_rad_s + damping_1_s * damping_1_s;
-  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, 0.1 * stiffness);
+  expect_spring(test_file("rests.csv", seismometer), stiffness, 0.1);
 }
 
 // A lost frame is eight times as far away as the spring reaches.
@@ -438,11 +398,7 @@ TEST(Guess, OneLostFrameDoesNotHideASpring) {
     const double t = 0.1 * i;
     text += printed("%.1f,%.5f\n", t, i == 40 ? 0.4 : 0.05 * std::cos(omega_rad_s * t) + noise());
   }
-  const Settings guessed = settings_in(guess_experiment({test_file("lost.csv", text)}, "."));
-  const std::vector<Settings> effects = guessed.tables("disturbance");
-  ASSERT_EQ(effects.size(), 1U);
-  constexpr double stiffness = omega_rad_s * omega_rad_s;
-  EXPECT_NEAR(effects[0].table("stiffness_N_per_m").number("value"), stiffness, 0.1 * stiffness);
+  expect_spring(test_file("lost.csv", text), omega_rad_s * omega_rad_s, 0.1);
 }
 
 // Counts of an encoder. At 14.5 counts per reading, the rounding errors alternate. Noise of 0.6
@@ -542,6 +498,12 @@ TEST(Guess, RatesThatFollowNoInertiaGiveNoRatios) {
   const std::string toml = guess_experiment({test_file("driven.csv", text)}, ".");
   EXPECT_THAT(toml, HasSubstr("do not determine the ratios"));
   EXPECT_TRUE(machine(toml).model.platform.inertia_kg_m2.isApprox(Mat3::Identity()));
+  // A proposed alternative is complete.
+  EXPECT_THAT(toml, HasSubstr("it is \"tabletop\", which requires mass_kg."));
+  std::string on_bearing = toml;
+  on_bearing.replace(on_bearing.find("topology = \"free\""), 17,
+                     "topology = \"tabletop\"\nmass_kg = 1");
+  EXPECT_EQ(machine(on_bearing).model.platform.topology, Topology::tabletop);
 }
 
 TEST(Guess, AThrowHasTheRatiosOfItsMoments) {

@@ -232,12 +232,6 @@ TEST(Improved, StartsWithTheAppendage) {
   EXPECT_EQ(read_propagation(settings_from(improved(own, d))).initial.extra[0], 0.0);
 }
 
-TEST(Improved, LeavesAFlightOfTheUsersAlone) {
-  const std::string own = written + "\n[propagate]\nduration_s = 5\n";
-  const PropagationRun run = read_propagation(settings_from(improved(own, sample_diagnosis())));
-  EXPECT_DOUBLE_EQ(run.duration_s, 5.0);
-}
-
 // Every effect that a diagnosis may name, as it would be written.
 TEST(Improved, HoldsEveryKindWithNumbers) {
   const std::string seen_by_markers = std::regex_replace(
@@ -319,13 +313,6 @@ TEST(Improved, HoldsAnEmpiricalTorque) {
     EXPECT_DOUBLE_EQ(found.parameters[i].value, value[i]);
     EXPECT_DOUBLE_EQ(found.parameters[i].sigma, sigma[i]);
   }
-}
-
-// A sentence with a line break must not become a separate line.
-TEST(Improved, CommentsStayComments) {
-  Diagnosis d = sample_diagnosis();
-  d.sentence = "one\nmass_kg = 3";
-  EXPECT_NO_THROW(settings_from(improved(written, d)));
 }
 
 }  // namespace

@@ -83,11 +83,5 @@ TEST(DiagnosisJson, StaysReadableWithoutFiniteNumbersOrFindings) {
   EXPECT_EQ(json["verdict"], "consistent");
 }
 
-TEST(DiagnosisJson, NamesEveryVerdictAsTheContractDoes) {
-  EXPECT_EQ(name_of(Verdict::consistent), "consistent");
-  EXPECT_EQ(name_of(Verdict::missing_physics), "missing_physics");
-  EXPECT_EQ(name_of(Verdict::unexplained), "unexplained");
-}
-
 }  // namespace
 }  // namespace photorque

@@ -14,7 +14,8 @@ namespace {
 
 Diagnosis answer_to(const std::string& name) {
   const std::filesystem::path folder = outside::reference_data("light/" + name);
-  const Experiment experiment = read_experiment(folder / "experiment.toml");
+  const Experiment experiment =
+      resolve_experiment(read_experiment_file(folder / "experiment.toml"));
   const LightLab lab(experiment);
   const auto curves = [&](const char* file) -> std::vector<LightRecording> {
     return {read_light_recording(folder / file, {Quat::Identity(), 298.15})};

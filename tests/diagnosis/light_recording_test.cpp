@@ -141,12 +141,6 @@ TEST(LightRecordings, PartsOfAnAttitudeAreRefused) {
   }
 }
 
-TEST(LightRecordings, SpreadsheetsMayMarkTheirByteOrder) {
-  const auto scan = read("\xEF\xBB\xBFu_m,v_m,irradiance_W_m2\r\n0.1,0.2,300\r\n");
-  EXPECT_EQ(scan.kind, LightRecording::Kind::scan);
-  EXPECT_EQ(scan.rows(), 1u);
-}
-
 TEST(LightRecordings, LampsWithoutAnyCurrentAreRefused) {
   EXPECT_THROW(read("t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,led_current_A\n"
                     "0,1,0,0,0,8,0.3,0\n1,1,0,0,0,8,0.3,0\n"),

@@ -20,7 +20,9 @@ namespace fs = std::filesystem;
 // A laboratory with an upright rectangular wall beside the receiver.
 class LightWithWall : public testing::Test {
  protected:
-  LightWithWall() : experiment_(read_experiment(folder_ / "experiment.toml")), lab_(experiment_) {
+  LightWithWall()
+      : experiment_(resolve_experiment(read_experiment_file(folder_ / "experiment.toml"))),
+        lab_(experiment_) {
     for (const auto& triangle : wall().triangles) {
       for (const Vec3& corner : triangle) {
         low_ = low_.cwiseMin(corner);

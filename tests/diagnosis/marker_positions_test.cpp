@@ -8,6 +8,7 @@
 #include "attitude/camera/pose.h"
 #include "attitude/model/dynamics.h"
 #include "tests/attitude/disturbance_bench.h"
+#include "tests/diagnosis/named.h"
 #include "tests/diagnosis/noisy_recording.h"
 #include "tests/noise.h"
 
@@ -181,12 +182,6 @@ NamedRecording seen_by(NamedRecording r, const Board& errors) {
   return r;
 }
 
-std::vector<std::string> named_kinds(const Diagnosis& d) {
-  std::vector<std::string> names;
-  for (const auto& effect : d.effects) names.push_back(effect.kind);
-  return names;
-}
-
 Session four_minutes() {
   Session session;
   session.duration_s = 240.0;
@@ -204,7 +199,7 @@ TEST(MarkerPositions, TheOneThatIsOffIsNamedAndMeasured) {
   const Vec3 off_m(3e-4, -2e-4, 4e-4);
   const Diagnosis d = diagnosed_board(one_off_m(3, off_m));
   EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
-  ASSERT_THAT(named_kinds(d), ElementsAre("marker_positions")) << d.sentence;
+  ASSERT_THAT(kinds_of(d), ElementsAre("marker_positions")) << d.sentence;
   const std::vector<FittedParameter>& found = d.effects[0].parameters;
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].key, "marker");
@@ -220,7 +215,7 @@ TEST(MarkerPositions, TheOneThatIsOffIsNamedAndMeasured) {
 TEST(MarkerPositions, AllThatAreOffAreNamedTogether) {
   const Diagnosis d = diagnosed_board(all_off_m(3));
   EXPECT_EQ(d.verdict, Verdict::missing_physics) << d.sentence;
-  ASSERT_THAT(named_kinds(d), ElementsAre("marker_positions")) << d.sentence;
+  ASSERT_THAT(kinds_of(d), ElementsAre("marker_positions")) << d.sentence;
   ASSERT_EQ(d.effects[0].parameters.size(), 1u);
   EXPECT_EQ(d.effects[0].parameters[0].value.size(), 15u);
   EXPECT_LT(d.holdout->chi2_per_sample_after, 1.1);
@@ -233,7 +228,7 @@ TEST(MarkerPositions, AreNotNamedWhereTheBoardIsRight) {
   Board turned_board;
   for (const Vec3& m : stated_m()) turned_board.push_back(Vec3(1e-3, -2e-3, 1.5e-3).cross(m));
   const Diagnosis turned = diagnosed_board(turned_board);
-  EXPECT_THAT(named_kinds(turned), ElementsAre("camera_misalignment")) << turned.sentence;
+  EXPECT_THAT(kinds_of(turned), ElementsAre("camera_misalignment")) << turned.sentence;
 }
 
 }  // namespace

@@ -334,14 +334,6 @@ TEST(ModuleDiagnosis, NotesAReferenceOfTheOtherSign) {
                                 ": currents are negative in light; their sign was reversed"));
 }
 
-TEST(ModuleDiagnosis, NamesNothingInOtherLight) {
-  Network network(0);
-  for (double& light : network.light_A) light *= 0.8;
-  // The shunt of the model follows the light; here it hardly matters.
-  const Diagnosis d = diagnosed(network, 0, 3);
-  EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
-}
-
 TEST(ModuleDiagnosis, NamesCellsWithAPartCutOff) {
   Network network(0);
   network.crack(0.3, 0.5);

@@ -48,12 +48,6 @@ Observation seen_by(size_t camera_every, bool gyro) {
   return seen;
 }
 
-TEST(Observation, TheTopObeysEulersEquation) {
-  constexpr double h_s = 1e-4;
-  const Quat step = Top::lab_from_body(3.0 - h_s).conjugate() * Top::lab_from_body(3.0 + h_s);
-  EXPECT_LT((turn_vector(step) / (2.0 * h_s) - Top::rate_rad_s(3.0)).norm(), 1e-7);
-}
-
 // Blocks of 0.1 s. The mean of positions over a turn of 0.1 rad lies inside the arc, by 8″; the
 // mean time of every second row is half a row, 3 ms, before that of all.
 TEST(Observation, BlocksStandWhereTheMotionIs) {

@@ -1,6 +1,6 @@
 // The effect of a swinging appendage on a platform with one axis, against the textbook step
 // response of a damped oscillator.
-#include "diagnosis/attitude/effects/flexible_mode.h"
+#include "diagnosis/attitude/effects/scan.h"
 
 #include <gtest/gtest.h>
 
@@ -47,8 +47,8 @@ struct PushedTurn {
       WhiteRow white = WhiteRow::Zero();
       white[2] =
           (fraction * (begin[0] - end[0]) + slow_arcsec * arcsecond_rad * std::sin(0.1 * t)) /
-          seen.noise.camera_rad.z();
-      white[5] = fraction * (begin[1] - end[1]) / seen.noise.gyro_rad_s.z();
+          seen.noise.of(2).level;
+      white[5] = fraction * (begin[1] - end[1]) / seen.noise.of(5).level;
       if (i % 2 == 0) white.head<3>().setConstant(NAN);
       propagated.residual.push_back(white);
     }

@@ -54,19 +54,6 @@ TEST(TextbookMachines, APendulumHeldByAHandAtFirst) {
   }
 }
 
-// θ'' = −k θ − c θ', ten readings a second, twenty a period.
-TEST(TextbookMachines, ATorsionPendulumInTwentyReadingsAPeriod) {
-  constexpr double k = 10.63, c = 0.43, interval_s = 0.1;
-  const DampedSwing swing{k, c};
-  const std::vector<double> angle_rad =
-      sampled(interval_s, 200, [&](double t) { return 2.2 * swing.at(t); });
-  const Diagnosis d = diagnosed(machine(about("z", "angle]\nnoise_arcsec = 834")), interval_s,
-                                {noisy("angle_rad", angle_rad, 0.004, 4)});
-  EXPECT_THAT(kinds_of(d), UnorderedElementsAre("tether", "bearing_drag")) << d.sentence;
-  expect_number(d, "tether", "stiffness_N_m_per_rad", 0, k);
-  expect_number(d, "bearing_drag", "coefficient_N_m_s", 0, c);
-}
-
 // A pendulum that swings freely from the first row, with one wrong angle of six times the noise.
 TEST(TextbookMachines, AWrongAngleIsNotAHand) {
   constexpr double interval_s = 0.0338, noise_rad = 0.003;

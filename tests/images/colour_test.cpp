@@ -135,7 +135,7 @@ TEST(CoolWarm, SignsDifferForEveryVision) {
 
 TEST(ColourScale, CoversTheValues) {
   const auto range = [](double smallest, double largest, bool is_signed) {
-    const ColourScale scale = colour_scale(smallest, largest, is_signed);
+    const ColourScale scale = colour_scale({smallest, largest}, is_signed);
     return std::pair(scale.low, scale.high);
   };
   EXPECT_EQ(range(3.0, 10.0, false), std::pair(0.0, 10.0));

@@ -4,7 +4,9 @@
 #include <random>
 #include <regex>
 
+#include "core/text/format.h"
 #include "images/drawing/curves.h"
+#include "images/drawing/page_layout.h"
 #include "images/drawing/plot.h"
 #include "tests/images/sample_product.h"
 
@@ -161,28 +163,17 @@ Plot constant_plot() {
 }
 
 TEST(PlotPicture, DrawsAConstantAcrossTheMiddle) {
-  const Picture picture = plot_picture(constant_plot(), {});
+  const Picture picture = page_of(constant_plot(), {}).pixels();
   EXPECT_GT(pixels_of_colour(picture, blue, 0, picture.height), picture.width * 3 / 4);
   EXPECT_EQ(pixels_of_colour(picture, blue, 0, picture.height / 3), 0);
   EXPECT_EQ(pixels_of_colour(picture, blue, picture.height * 2 / 3, picture.height), 0);
-}
-
-TEST(PlotPicture, LeavesGapsWhereNothingCanBeShown) {
-  Plot plot = constant_plot();
-  plot.curves[0].x = {0.0, 0.25, 0.5, 0.75, 1.0};
-  plot.curves[0].y = {5.0, 5.0, std::nan(""), 5.0, 5.0};
-  const Picture whole = plot_picture(constant_plot(), {});
-  const Picture gap = plot_picture(plot, {});
-  const double ratio = static_cast<double>(pixels_of_colour(gap, blue, 0, gap.height)) /
-                       pixels_of_colour(whole, blue, 0, whole.height);
-  EXPECT_NEAR(ratio, 0.5, 0.02);
 }
 
 // Heights as the values, and clear of the frame on both sides.
 TEST(PlotPicture, DrawsBarsFromZeroInsideTheFrame) {
   Plot plot = constant_plot();
   plot.curves = {{"", {1.0}, {4.0}, {}, false, true}, {"", {2.0}, {2.0}, {}, false, true}};
-  const Picture picture = plot_picture(plot, {});
+  const Picture picture = page_of(plot, {}).pixels();
   const int tall = pixels_of_colour(picture, curve_stroke(0).colour, 0, picture.height);
   const int low = pixels_of_colour(picture, curve_stroke(1).colour, 0, picture.height);
   EXPECT_NEAR(static_cast<double>(tall) / low, 2.0, 0.02);
@@ -211,7 +202,7 @@ TEST(FreeCorner, KeepsOffBars) {
 TEST(PlotPicture, StacksPanels) {
   Plot plot = constant_plot();
   plot.below = {{"b", {{"", {0.0, 1.0}, {1.0, 2.0}}}}};
-  const Picture picture = plot_picture(plot, {});
+  const Picture picture = page_of(plot, {}).pixels();
   EXPECT_GT(pixels_of_colour(picture, blue, 0, picture.height / 2), 100);
   EXPECT_GT(pixels_of_colour(picture, blue, picture.height / 2, picture.height), 100);
 }
@@ -239,35 +230,9 @@ TEST(PlotPicture, SurvivesEveryDegeneratePlot) {
   least_on_log.curves[0].y = {5e-324, 5e-324};
   for (const Plot& plot : {nothing, empty_curve, negative_on_log, one_point_on_log, huge, infinite,
                            rounded_on_log, ends_on_log, least_on_log}) {
-    EXPECT_GT(plot_picture(plot, {}).height, 100);
-    EXPECT_THAT(svg_of(plot, {}), ::testing::HasSubstr("</svg>"));
+    EXPECT_GT(page_of(plot, {}).pixels().height, 100);
+    EXPECT_THAT(page_of(plot, {}).svg(), ::testing::HasSubstr("</svg>"));
   }
-}
-
-TEST(PlotSvg, StaysSmallForLongHistories) {
-  Plot plot = constant_plot();
-  for (int i = 0; i < 300000; ++i) {
-    plot.curves[0].x.push_back(1.0 + i);
-    plot.curves[0].y.push_back(std::sin(1e-4 * i) + 0.01 * (i % 7));
-  }
-  EXPECT_LT(svg_of(plot, {}).size(), 300000u);
-}
-
-TEST(PlotHtml, KeepsASpikeThatOneOfAHundredThousandSamplesHolds) {
-  Plot plot;
-  Plot::Curve line;
-  for (int i = 0; i < 100000; ++i) {
-    line.x.push_back(i);
-    line.y.push_back(i == 54321 ? 1.0 : 0.0);
-  }
-  plot.curves = {line};
-  const auto drawn = paths_of(svg_of(plot_html(plot)), "stroke", blue).at(0);
-  EXPECT_LT(drawn.size(), 5000u);
-  const auto [top, foot] =
-      std::ranges::minmax_element(drawn, {}, [](const auto& p) { return p.second; });
-  const PlotLayout layout = plot_layout(plot, {.right = html_chart_width, .first_height = 160.0});
-  const double scale = layout.panels[0].y.fraction(1.0) - layout.panels[0].y.fraction(0.0);
-  EXPECT_NEAR(foot->second - top->second, 160.0 * scale, 0.2);
 }
 
 TEST(PlotHtml, BreaksTheLineAtAGap) {
@@ -374,7 +339,7 @@ TEST(Plot, LegendsDoNotCoverTheLabelOfABand) {
   plot.curves = {{"measured", {0.0, 1.0}, {1.0, 0.0}}, {"model", {0.0, 1.0}, {0.9, 0.1}}};
   plot.shaded = {{0.5, 1.0}};
   plot.shaded_label = "held out";
-  const std::string page = svg_of(plot, {});
+  const std::string page = page_of(plot, {}).svg();
   const auto height_of = [&](const std::string& text) {
     const std::regex element("translate\\([0-9.-]+ ([0-9.-]+)\\)[^>]*>" + text + "</text>");
     std::smatch found;
@@ -398,7 +363,7 @@ TEST(Plot, ManyBarsStandOnEachOther) {
     curve.bars = true;
     plot.curves.push_back(curve);
   }
-  const Picture picture = plot_picture(plot, {});
+  const Picture picture = page_of(plot, {}).pixels();
   std::array<double, 2> pixels{};
   for (size_t i = 0; i < picture.rgb.size(); i += 3) {
     for (size_t k = 0; k < 2; ++k) {
@@ -416,7 +381,8 @@ TEST(Plot, ManyBarsStandOnEachOther) {
 TEST(Styles, PaperHasNoTitleAndRelativelyLargerLetters) {
   Plot plot = constant_plot();
   plot.title = "A long title";
-  const std::string page = svg_of(plot, {}), paper = svg_of(plot, {}, PictureStyle::paper);
+  const std::string page = page_of(plot, {}).svg(),
+                    paper = page_of(plot, {}, PictureStyle::paper).svg();
   EXPECT_THAT(page, ::testing::HasSubstr(">" + plot.title + "</text>"));
   EXPECT_THAT(paper, ::testing::Not(::testing::HasSubstr(plot.title)));
   const auto width = [](const std::string& svg) {
@@ -425,8 +391,43 @@ TEST(Styles, PaperHasNoTitleAndRelativelyLargerLetters) {
   EXPECT_NEAR(width(paper) / width(page), 0.62, 0.01);
   // Letters have their size in points in both.
   EXPECT_THAT(paper, ::testing::HasSubstr("font-size=\"10.50\""));
-  const Picture slide = plot_picture(plot, {}, PictureStyle::slide);
-  EXPECT_GT(slide.width, plot_picture(plot, {}).width);
+  const Picture slide = page_of(plot, {}, PictureStyle::slide).pixels();
+  EXPECT_GT(slide.width, page_of(plot, {}).pixels().width);
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  std::erase(text, ' ');
+  return text;
+}
+
+TEST(FittedText, NeverIsWiderThanItsRoom) {
+  std::mt19937 generator(11);
+  for (int i = 0; i < 300; ++i) {
+    std::string text;
+    for (unsigned n = generator() % 60; n > 0; --n) text += generator() % 6 == 0 ? " " : "µé";
+    const double width = 40.0 + generator() % 200;
+    const TextBlock block = fitted_text(text, width, {.size = 14.0}, 9.0, 3);
+    EXPECT_LE(block.lines.size(), 3u);
+    for (const std::string& line : block.lines) {
+      EXPECT_LE(text_width(line, block.style), width + 1e-9) << line;
+      EXPECT_EQ(clean_text(line), line) << "a character was cut in two";
+    }
+    const bool shortened = block.lines.back().ends_with("…");
+    EXPECT_TRUE(shortened || joined(block.lines) == joined({text}));
+  }
+}
+
+TEST(FittedText, ShrinksBeforeItShortens) {
+  const std::string text = "Irradiance on the solar array of the platform";
+  const TextStyle style{.size = 15.0};
+  const double exact = text_width(text, style);
+  EXPECT_EQ(fitted_text(text, exact, style, 8.0, 1).style.size, 15.0);
+  const TextBlock smaller = fitted_text(text, 0.7 * exact, style, 8.0, 1);
+  EXPECT_LT(smaller.style.size, 15.0);
+  EXPECT_EQ(smaller.lines, std::vector<std::string>{text});
+  EXPECT_TRUE(fitted_text(text, 0.3 * exact, style, 8.0, 1).lines[0].ends_with("…"));
 }
 
 }  // namespace

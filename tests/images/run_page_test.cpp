@@ -84,7 +84,7 @@ TEST(RunPage, NeedsNoNetwork) {
 TEST(RunPage, ArraysKeepTheirNumbers) {
   const std::vector<float> numbers = {1.0f, -2.5f};
   // 1.0f is 0x3f800000, −2.5f 0xc0200000, lowest byte first.
-  EXPECT_EQ(packed(std::span<const float>(numbers))["f32"], "AACAPwAAIMA=");
+  EXPECT_EQ(packed(numbers)["f32"], "AACAPwAAIMA=");
   const std::vector<double> values = {0.0, 32767.0, 65534.0, nan};
   const auto coarse = packed_coarse(values, 0.0, 65534.0);
   EXPECT_EQ(coarse["step"], 1.0);

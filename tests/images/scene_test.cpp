@@ -50,7 +50,7 @@ TEST(Shaded, ReceiversHaveTheExactColourOfTheScale) {
     const int receiver = column / 2;
     return Sample{2.0F, 0, Eigen::Vector3f(0.6F, 0.0F, 0.8F), 0.5F, 10.0F * float(receiver)};
   });
-  const ColourScale scale = colour_scale(0.0, 150.0, false);
+  const ColourScale scale = colour_scale({0.0, 150.0}, false);
   const Picture picture = shaded(view, scale);
   for (int column = 0; column < 16; ++column) {
     EXPECT_EQ(picture.pixel(column, 8), rgb_bytes(viridis()(column / 15.0)));
@@ -59,7 +59,7 @@ TEST(Shaded, ReceiversHaveTheExactColourOfTheScale) {
 
 TEST(Shaded, NothingIsTheBackground) {
   const SceneView view = view_of(4, 4, 3, [](int, int) { return Sample{}; });
-  const Picture picture = shaded(view, colour_scale(0.0, 1.0, false));
+  const Picture picture = shaded(view, colour_scale({0.0, 1.0}, false));
   EXPECT_EQ(picture.pixel(2, 2), rgb_bytes(scene_background));
 }
 
@@ -79,7 +79,7 @@ TEST(Shaded, SurfacesDarkenAsTheyTurnAway) {
     const SceneView view = view_of(3, 3, 1, [&](int, int) {
       return Sample{1.0F, 0, normal, cos_view};
     });
-    return shaded(view, colour_scale(0.0, 1.0, false)).pixel(1, 1)[0];
+    return shaded(view, colour_scale({0.0, 1.0}, false)).pixel(1, 1)[0];
   };
   EXPECT_GT(grey(1.0F, Eigen::Vector3f::UnitX()), grey(0.5F, Eigen::Vector3f::UnitX()));
   EXPECT_GT(grey(0.5F, Eigen::Vector3f::UnitX()), grey(0.0F, Eigen::Vector3f::UnitX()));
@@ -164,7 +164,7 @@ TEST(DrawnRays, EndAtTheFirstSurface) {
   EXPECT_GT(view.ray[65 * 101 + 50], 0.2F);
   EXPECT_EQ(view.ray[50 * 101 + 60], 0.0F);
   EXPECT_EQ(view.ray[10 * 101 + 50], 0.0F) << "beyond its end";
-  const ColourScale scale = colour_scale(0.0, 1.0, false);
+  const ColourScale scale = colour_scale({0.0, 1.0}, false);
   EXPECT_NE(shaded(view, scale).pixel(50, 35), rgb_bytes(scene_background));
   // Rays behind the camera, or through it, draw nothing wrong.
   draw_rays(view, from_above, {0.0F, 0.0F, 20.0F, 0.0F, 0.0F, 30.0F});
@@ -197,13 +197,13 @@ SceneView lit_square(int size) {
 }
 
 TEST(ScenePicture, ShowsTheViewAtItsOwnPixels) {
-  SceneLabels labels{.title = "Square", .caption = "", .scale_end_W_m2 = 800.0};
+  SceneLabels labels{.title = "Square", .caption = ""};
   const Picture picture = scene_picture(lit_square(200), labels, sample_provenance());
-  const auto half = rgb_bytes(viridis()(0.5));
+  const auto brightest = rgb_bytes(viridis()(1.0));
   int pixels = 0;
   for (int row = 0; row < picture.height; ++row) {
     for (int column = 0; column < picture.width; ++column) {
-      pixels += picture.pixel(column, row) == half ? 1 : 0;
+      pixels += picture.pixel(column, row) == brightest ? 1 : 0;
     }
   }
   // 99 columns by 149 rows, less the drawn outline of one pixel and plus a line in the colour bar.

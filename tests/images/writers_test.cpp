@@ -36,13 +36,13 @@ class Writers : public FolderTest {
 
 TEST_F(Writers, WriteExactlyTheFilesTheyName) {
   for (const WriterKind& kind : all_writer_kinds()) {
-    std::vector<fs::path> paths = kind.write(sample_product(), {}, folder, PictureStyle::page);
+    std::vector<fs::path> paths = kind.write({sample_product(), {}, folder});
     EXPECT_FALSE(paths.empty()) << kind.name;
     for (const fs::path& path : paths) EXPECT_EQ(path.extension(), "." + kind.name);
     std::ranges::sort(paths);
     EXPECT_EQ(paths, entries()) << kind.name;
     for (const fs::path& path : paths) fs::remove(path);
-    EXPECT_THAT(kind.write({}, {}, folder, PictureStyle::page), IsEmpty()) << kind.name;
+    EXPECT_THAT(kind.write({{}, {}, folder}), IsEmpty()) << kind.name;
   }
 }
 
@@ -75,12 +75,10 @@ TEST_F(Writers, WriteTheSameBytesASecondLater) {
 // written.
 TEST_F(Writers, LeaveNothingWhenTheFileCannotAppear) {
   for (const WriterKind& kind : all_writer_kinds()) {
-    const std::vector<fs::path> paths =
-        kind.write(sample_product(), {}, folder, PictureStyle::page);
+    const std::vector<fs::path> paths = kind.write({sample_product(), {}, folder});
     fs::remove_all(folder);
     fs::create_directories(paths.front() / "in the way");
-    EXPECT_THROW(kind.write(sample_product(), {}, folder, PictureStyle::page), InputError)
-        << kind.name;
+    EXPECT_THROW(kind.write({sample_product(), {}, folder}), InputError) << kind.name;
     EXPECT_EQ(entries(), std::vector<fs::path>{paths.front()}) << kind.name;
     EXPECT_TRUE(fs::exists(paths.front() / "in the way")) << kind.name;
   }
@@ -89,12 +87,10 @@ TEST_F(Writers, LeaveNothingWhenTheFileCannotAppear) {
 TEST_F(Writers, RefuseFoldersThatCannotBeWritten) {
   std::ofstream(folder / "file") << "no folder";
   for (const WriterKind& kind : all_writer_kinds()) {
-    EXPECT_THROW(kind.write(sample_product(), {}, folder / "file", PictureStyle::page), InputError)
-        << kind.name;
+    EXPECT_THROW(kind.write({sample_product(), {}, folder / "file"}), InputError) << kind.name;
     // Read-only even for the administrator.
     if (!fs::is_directory("/proc/self")) continue;
-    EXPECT_THROW(kind.write(sample_product(), {}, "/proc/self", PictureStyle::page), InputError)
-        << kind.name;
+    EXPECT_THROW(kind.write({sample_product(), {}, "/proc/self"}), InputError) << kind.name;
   }
 }
 
@@ -121,14 +117,14 @@ class LongestFile {
 TEST_F(Writers, ReportFailedWrites) {
   for (const WriterKind& kind : all_writer_kinds()) {
     uintmax_t shortest = std::numeric_limits<uintmax_t>::max();
-    for (const fs::path& path : kind.write(sample_product(), {}, folder, PictureStyle::page)) {
+    for (const fs::path& path : kind.write({sample_product(), {}, folder})) {
       shortest = std::min(shortest, fs::file_size(path));
       fs::remove(path);
     }
     for (const uintmax_t limit : {uintmax_t{0}, shortest / 2, shortest - 1}) {
       {
         const LongestFile longest(limit);
-        EXPECT_THROW(kind.write(sample_product(), {}, folder, PictureStyle::page), InputError)
+        EXPECT_THROW(kind.write({sample_product(), {}, folder}), InputError)
             << kind.name << ", " << limit;
       }
       EXPECT_THAT(entries(), IsEmpty()) << kind.name << ", " << limit;
@@ -140,8 +136,7 @@ TEST_F(Writers, RefuseReadOnlyFolders) {
   if (::geteuid() == 0) GTEST_SKIP() << "the administrator may write everywhere";
   fs::permissions(folder, fs::perms::owner_read | fs::perms::owner_exec);
   for (const WriterKind& kind : all_writer_kinds()) {
-    EXPECT_THROW(kind.write(sample_product(), {}, folder, PictureStyle::page), InputError)
-        << kind.name;
+    EXPECT_THROW(kind.write({sample_product(), {}, folder}), InputError) << kind.name;
   }
   fs::permissions(folder, fs::perms::owner_all);
   EXPECT_THAT(entries(), IsEmpty());

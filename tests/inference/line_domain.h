@@ -34,12 +34,14 @@ constexpr double amplitude_sigma = 30.0, log_prior = -3.4;
 // The nominal model's slope is 0 ± this.
 constexpr double slope_sigma = 10.0;
 
-struct LineFit {
-  double chi2 = 0.0, data_chi2 = 0.0;
-  int64_t samples = 0;
-  Eigen::VectorXd value;    // intercept of each run, slope, amplitudes
-  Eigen::MatrixXd hessian;  // of them, with the priors
-  double chi2_per_sample() const { return data_chi2 / static_cast<double>(samples); }
+struct LineFit : Fit {
+  Eigen::VectorXd value;        // intercept of each run, slope, amplitudes
+  Eigen::MatrixXd information;  // of them, with the priors
+  // The effect of the errors of the amplitudes on the held-out runs is not predicted.
+  LineFit() {
+    hessian = ArrowMatrix(0, 0, 1);
+    hessian.add_to_diagonal(0, std::numeric_limits<double>::quiet_NaN());
+  }
 };
 
 class LineDomain {
@@ -56,15 +58,16 @@ class LineDomain {
   };
   using Runs = std::vector<Series>;
 
-  LineDomain(std::vector<Term> terms, Thresholds limits)
-      : terms_(std::move(terms)), limits_(std::move(limits)) {
-    for (const Term& t : terms_) traits_.push_back(t.traits);
+  LineDomain(std::vector<Term> terms, Thresholds thresholds)
+      : limits(std::move(thresholds)), terms_(std::move(terms)) {
+    for (const Term& t : terms_) list.push_back(t.traits);
   }
 
   Trial nominal(const Runs& runs) const { return fitted({}, runs); }
 
-  const std::vector<CandidateTraits>& candidates() const { return traits_; }
-  const Thresholds& limits() const { return limits_; }
+  std::vector<CandidateTraits> list;
+  Thresholds limits;
+
   Start start_of(size_t c) const { return {terms_[c].grid.front()}; }
 
   Trial extend(const Trial& parent, size_t c, const Start& start, const Runs& runs,
@@ -155,7 +158,7 @@ class LineDomain {
     }
     const LineFit fit = solve(all, runs, all.candidates.size());
     const Eigen::Index rest = fit.value.size() - first;
-    const Eigen::MatrixXd& H = fit.hessian;
+    const Eigen::MatrixXd& H = fit.information;
     problem.information =
         H.bottomRightCorner(first, first) -
         H.bottomLeftCorner(first, rest) *
@@ -189,7 +192,7 @@ class LineDomain {
         if (gain > best.gain) best = {searched, gain};
       }
       result.push_back({});
-      if (best.gain > limits_.scoring.min_scan_gain) result.back().push_back(best);
+      if (best.gain > limits.scoring.min_scan_gain) result.back().push_back(best);
     }
     return result;
   }
@@ -203,7 +206,7 @@ class LineDomain {
       for (size_t i = 0; i < pieces; ++i) {
         const auto first = static_cast<Eigen::Index>(i * n / pieces);
         const auto count = static_cast<Eigen::Index>((i + 1) * n / pieces) - first;
-        if (static_cast<size_t>(count) < limits_.search.min_readings_of_piece) continue;
+        if (static_cast<size_t>(count) < limits.search.min_readings_of_piece) continue;
         result.push_back({run.x.segment(first, count), run.y.segment(first, count), run.sign});
       }
     }
@@ -217,7 +220,7 @@ class LineDomain {
       all.push_back({{left.begin() + first, left.begin() + first + run.x.size()}});
       first += run.x.size();
     }
-    return whiteness(all, limits_.noise).excess_sigma;
+    return whiteness(all, limits.noise).excess_sigma;
   }
 
  private:
@@ -282,9 +285,9 @@ class LineDomain {
       at += own;
     }
     LineFit fit;
-    fit.hessian = J.transpose() * J;
-    fit.hessian.diagonal() += prior;
-    fit.value = fit.hessian.ldlt().solve(Eigen::VectorXd(J.transpose() * y));
+    fit.information = J.transpose() * J;
+    fit.information.diagonal() += prior;
+    fit.value = fit.information.ldlt().solve(Eigen::VectorXd(J.transpose() * y));
     fit.data_chi2 = (y - J * fit.value).squaredNorm();
     fit.chi2 = fit.data_chi2 + fit.value.dot(prior.asDiagonal() * fit.value);
     fit.samples = y.size();
@@ -293,11 +296,12 @@ class LineDomain {
 
   Trial fitted(Trial t, const Runs& runs) const {
     t.fit = solve(t, runs, 0);
-    t.log_evidence = -0.5 * t.fit.chi2 - 0.5 * t.fit.hessian.ldlt().vectorD().array().log().sum();
+    t.log_evidence =
+        -0.5 * t.fit.chi2 - 0.5 * t.fit.information.ldlt().vectorD().array().log().sum();
     t.significance.clear();
     t.objection.clear();
-    const Eigen::MatrixXd covariance = t.fit.hessian.ldlt().solve(
-        Eigen::MatrixXd::Identity(t.fit.hessian.rows(), t.fit.hessian.rows()));
+    const Eigen::MatrixXd covariance = t.fit.information.ldlt().solve(
+        Eigen::MatrixXd::Identity(t.fit.information.rows(), t.fit.information.rows()));
     Eigen::Index at = static_cast<Eigen::Index>(runs.size()) + 1;
     for (const size_t c : t.candidates) {
       const auto own = static_cast<Eigen::Index>(terms_[c].traits.parameters);
@@ -312,8 +316,6 @@ class LineDomain {
   }
 
   std::vector<Term> terms_;
-  Thresholds limits_;
-  std::vector<CandidateTraits> traits_;
 };
 
 // Polynomials of degree 2, 3, … along [−1, 1] that are orthonormal to each other and to every line,

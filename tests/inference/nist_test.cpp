@@ -1,9 +1,9 @@
-// Against certified values (their source is in tools/benchmarks/nist_strd.h).
+// Against certified values.
 #include <gtest/gtest.h>
 
 #include "inference/estimator/fit.h"
 #include "inference/estimator/forward_model.h"
-#include "tools/benchmarks/nist_strd.h"
+#include "tests/inference/nist_strd.h"
 
 namespace photorque::inference {
 namespace {

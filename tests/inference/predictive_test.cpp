@@ -6,7 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "inference/held_out.h"
 #include "tests/inference/linear_bench.h"
 
 namespace photorque::inference {

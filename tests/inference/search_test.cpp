@@ -41,7 +41,7 @@ Answered answer(const std::vector<Term>& terms, const std::vector<Series>& train
   a.trials = search(domain, domain.nominal(train), train, 1);
   if (!held.empty()) weigh_with_held_out(domain, train, held, 1, a.trials);
   a.decision =
-      decide({a.trials.begin(), a.trials.end()}, domain.candidates(),
+      decide({a.trials.begin(), a.trials.end()}, domain.list,
              {[&](size_t t) { return domain.excess_sigma(a.trials[t], train); }}, limits.decision);
   for (const size_t c : a.trials[a.decision.chosen].candidates) {
     a.names.insert(terms[c].traits.name);
@@ -148,7 +148,7 @@ TEST(Search, FindsAStrongTermByWayOfPieces) {
   const Eigen::VectorXd signal = of_degree(2, 120.0);
   const std::vector<Series> train = {recorded(1, signal)}, held = {recorded(2, signal)};
   const LineDomain domain(known_terms(), {});
-  ASSERT_TRUE(has_diverged(domain.nominal(train), domain.limits()));
+  ASSERT_TRUE(has_diverged(domain.nominal(train), domain.limits));
   const Answered a = answer(known_terms(), train, held);
   EXPECT_EQ(a.names, Names{"degree 2"});
   // The reported values were fitted to the whole: one intercept, a slope, an amplitude.

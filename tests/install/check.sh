@@ -36,12 +36,12 @@ grep -qE '^tilt 0\.[0-9]+ rad$|^tilt [0-9.]+e-[0-9]+ rad$' "$place/said"
 
 if grep -q '^PHOTORQUE_HARDEN:BOOL=ON' "$build/CMakeCache.txt"; then
   echo "== Hardened"
-  "$source/tests/install/hardened.sh" "$prefix/bin/photorque" "$prefix"/lib/*/photorque/*.so \
+  "$source/tests/install/hardened.sh" "$prefix/bin/photorque" $(find "$prefix" -path '*/photorque/*.so') \
     "$(find "$prefix" -name 'libphotorque.so.*.*.*')"
 fi
 
 echo "== Libraries from their own places alone"
-"$source/tests/install/hardened.sh" --search "$prefix/bin/photorque" "$prefix"/lib/*/photorque/*.so \
+"$source/tests/install/hardened.sh" --search "$prefix/bin/photorque" $(find "$prefix" -path '*/photorque/*.so') \
   "$(find "$prefix" -name 'libphotorque.so.*.*.*')"
 
 echo "== Only our own symbols"

@@ -142,43 +142,6 @@ TEST(PhotovoltaicArray, PhotocurrentIsResponsivityTimesLightPerBand) {
   }
 }
 
-TEST(PhotovoltaicArray, ShadedCellIsTheOneInReverse) {
-  std::vector<double> irradiance(100, 1000.0);
-  irradiance[37] = 100.0;
-  auto table = ten_by_ten();
-  table["bypass"] = {"none"};
-  const ArrayResult result = evaluate(design(table), array_light(10, 10, 0.2, 0.2, irradiance));
-  for (size_t i = 0; i < 100; ++i) {
-    if (i == 37) {
-      EXPECT_LT(result.cells.voltages_V[i], 0.0);
-    } else {
-      EXPECT_GT(result.cells.voltages_V[i], 0.0);
-    }
-  }
-}
-
-TEST(PhotovoltaicArray, CellPowersAddUpToThePowerDeliveredAndLostInDiodes) {
-  std::vector<double> irradiance;
-  for (int row = 0; row < 10; ++row) {
-    for (int column = 0; column < 10; ++column) irradiance.push_back(200.0 + 8.0 * column * row);
-  }
-  for (const char* kind : {"none", "ideal", "junction"}) {
-    auto table = ten_by_ten();
-    table["bypass"] = {kind};
-    table["bypass_every"] = {20};
-    const ArrayResult result = evaluate(design(table), array_light(10, 10, 0.2, 0.2, irradiance));
-    double delivered_W = 0.0;
-    for (size_t i = 0; i < 100; ++i) {
-      delivered_W += result.cells.voltages_V[i] * result.cells.currents_A[i];
-    }
-    // Bypass diodes only take.
-    EXPECT_GE(delivered_W, result.power_W.value * (1 - 1e-10)) << kind;
-    if (std::string(kind) == "none") {
-      EXPECT_NEAR(delivered_W, result.power_W.value, 1e-10 * delivered_W);
-    }
-  }
-}
-
 // Light to watts with one cell in full shade that cannot break down: its substring of 20 is lost,
 // and its bypass diode takes drop times current from the other 80 cells.
 TEST(PhotovoltaicArray, DarkCellWithoutBreakdownCostsItsSubstring) {
@@ -206,13 +169,6 @@ TEST(PhotovoltaicArray, DarkCellWithoutBreakdownCostsItsSubstring) {
   EXPECT_NEAR(lost_V, result.voltage_V.value, 1e-9 * result.voltage_V.value);
   EXPECT_LT(result.cells.voltages_V[37], -5.0);
   EXPECT_LT(std::abs(result.cells.currents_A[37]), 1e-7);
-}
-
-TEST(PhotovoltaicArray, DarkArrayGivesNothingAndDoesNotFail) {
-  const ArrayResult result =
-      evaluate(design(), array_light(10, 10, 0.2, 0.2, std::vector<double>(100, 0.0)));
-  EXPECT_EQ(result.power_W.value, 0.0);
-  EXPECT_TRUE(result.maxima.empty());
 }
 
 // The spread of results over many independent data sets equals the standard error.

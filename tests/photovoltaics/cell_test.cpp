@@ -87,15 +87,6 @@ TEST(PhotovoltaicCell, OmegaFunctionHasItsKnownValues) {
   EXPECT_EQ(wright_log_omega(-100.0), -100.0);
 }
 
-TEST(PhotovoltaicCell, CurrentAndVoltageAreInverse) {
-  const CellCurve cell(reference::cell());
-  for (double current_A = -20.0; current_A < 20.0; current_A += 0.37) {
-    const double voltage_V = cell.voltage_V(5.0, current_A);
-    // Rounding of the voltage over the slope: 1e-13 of the largest current here.
-    EXPECT_NEAR(cell.current_A(5.0, voltage_V), current_A, 2e-12) << voltage_V;
-  }
-}
-
 TEST(PhotovoltaicCell, DerivativesMatchDifferences) {
   const CellCurve cell(reference::cell());
   for (double v = -5.2; v < 0.75; v += 0.05) {

@@ -200,19 +200,6 @@ TEST(PhotovoltaicNetwork, LargestMaximumOfHundredsOfPieces) {
   EXPECT_GT(several, 12u);  // or the test says little
 }
 
-TEST(PhotovoltaicNetwork, CurrentFallsWithVoltage) {
-  for (uint64_t seed = 0; seed < 5; ++seed) {
-    for (const auto& [name, wiring, is_costly] : small_networks()) {
-      const auto points =
-          reference::curve(wiring, random_suns(200 + seed, 12), reference::cell()).scan(300).points;
-      for (size_t i = 1; i < points.size(); ++i) {
-        ASSERT_GE(points[i].voltage_V, points[i - 1].voltage_V - 1e-12) << name;
-        ASSERT_LE(points[i].current_A, points[i - 1].current_A + 1e-12) << name;
-      }
-    }
-  }
-}
-
 // The power of the cells equals that of the array plus the loss in its diodes: for clamps, the drop
 // times the current that the cells do not carry.
 TEST(PhotovoltaicNetwork, EnergyIsConserved) {
@@ -262,22 +249,6 @@ TEST(PhotovoltaicNetwork, CellsOfNestedGroupsSumToTheArray) {
       }
     }
   }
-}
-
-TEST(PhotovoltaicNetwork, CellInFullShadeCostsItsSubstring) {
-  CellParameters cell = reference::cell();
-  cell.breakdown_fraction = 0.0;
-  cell.shunt_ohm = 1e9;
-  std::vector<double> suns(100, 1.0);
-  suns[42] = 0.0;
-  const ArrayWiring wiring = regular_wiring(10, 10, options(1, 20, reference::clamp(), {}));
-  const ArrayPoint with = reference::curve(wiring, suns, cell).maximum_power();
-  // 80 cells and a clamp that takes 0.5 V: the maximum of I (V₈₀ − 0.5).
-  const ArrayWiring four =
-      regular_wiring(8, 10, options(1, 20, reference::clamp(), reference::clamp()));
-  const ArrayPoint alone =
-      reference::curve(four, std::vector<double>(80, 1.0), cell).maximum_power();
-  EXPECT_NEAR(with.power_W(), alone.power_W(), 1e-11 * alone.power_W());
 }
 
 // With soft breakdown the dark cell conducts at −5.5 V, which a substring of 20 lit cells can give:

@@ -90,7 +90,7 @@ TEST(CellPlaces, MeshAndRegularRectanglesGiveTheSameArray) {
   }
   const ArrayLight sheet = array_light(29, 19, 0.29, 0.19, irradiance);
   ArrayLight lit = sheet;
-  lit.area_m2 = grid.area_m2;
+  lit.grid.area_m2 = grid.area_m2;
   for (size_t i = 0; i < irradiance.size(); ++i) {
     lit.power_W.sums[i] = irradiance[i] * grid.area_m2[i];
   }

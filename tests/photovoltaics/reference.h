@@ -19,6 +19,25 @@
 #include "tests/outside.h"
 #include "tests/settings.h"
 
+namespace photorque {
+
+// Light of a known irradiance on a whole grid, without error: one replicate, one band.
+inline ArrayLight array_light(int width, int height, double u_length_m, double v_length_m,
+                              const std::vector<double>& irradiance_W_m2) {
+  const double area_m2 = u_length_m * v_length_m / (width * height);
+  ArrayLight light;
+  light.grid.width = width;
+  light.grid.height = height;
+  light.grid.u_high = u_length_m;
+  light.grid.v_high = v_length_m;
+  light.grid.area_m2.assign(irradiance_W_m2.size(), area_m2);
+  light.power_W = {irradiance_W_m2.size(), 1, {}, {}};
+  for (const double e : irradiance_W_m2) light.power_W.sums.push_back(e * area_m2);
+  return light;
+}
+
+}  // namespace photorque
+
 namespace photorque::reference {
 
 inline std::filesystem::path file(const std::string& name) {

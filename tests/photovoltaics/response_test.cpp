@@ -36,7 +36,7 @@ TEST(BandResponsivity, LineOnAnEdgeGivesItsCurrentInBothBands) {
 // 0 W without a word is no answer: light outside of the table is reported; sunlight beyond both
 // ends of a table that falls to zero there is not.
 TEST(LightOutside, OfTheTableIsReported) {
-  const QuantumEfficiency silicon = silicon_quantum_efficiency();
+  const QuantumEfficiency silicon = quantum_efficiency_of("silicon_interdigitated");
   const auto reported = [](const QuantumEfficiency& efficiency, const Spectrum& spectrum) {
     const WeighedSpectrum two[] = {{spectrum, 1.0}, {spectrum, 2.0}};
     return light_outside(efficiency, two);

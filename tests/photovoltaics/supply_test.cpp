@@ -66,19 +66,6 @@ TEST(PowerSupply, BatteryIsEmptyWhenTheDeficitHasEmptiedIt) {
   EXPECT_LE(supply.closure().largest(), 1e-12);
 }
 
-TEST(PowerSupply, ReportsTheTimeOfLeavingFullAndEmpty) {
-  SupplyDesign design = four_cells();
-  design.battery = Battery{.capacity_J = 10.0};
-  design.load_W = 1.0;
-  PowerSupply supply(design, 10.0);
-  for (int k = 0; k < 30; ++k) supply.step(k, 1.0, even(0.0));
-  for (int k = 30; k < 90; ++k) supply.step(k, 1.0, even(cell_A));
-  std::vector<std::string> names;
-  for (const SupplyEvent& event : supply.events()) names.push_back(event.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"battery_not_full", "battery_empty",
-                                             "battery_not_empty", "battery_full"}));
-}
-
 // Flickering light empties the battery by less than 1 % and fills it again.
 TEST(PowerSupply, ABatteryThatStaysNearlyFullHasNoFurtherEvents) {
   SupplyDesign design = four_cells();

@@ -58,26 +58,6 @@ TEST(PhotovoltaicWirings, EightWiringsUnderThreeMapsAgreeWithNgspice) {
   EXPECT_GE(compared, 350u);
 }
 
-// Both groups of the module are alike, so that it gives twice what one of them gives; and one of
-// them is two strings in parallel under one diode.
-TEST(PhotovoltaicWirings, TwinModuleIsTwiceItsGroup) {
-  const auto chain = [](int64_t i) { return list({{i}, {i + 1}}); };
-  const SettingsNode group_0 = list({list({chain(0), chain(2)})});
-  const SettingsNode group_1 = list({list({chain(4), chain(6)})});
-  const ArrayDesign listed = design(8, 1, "wiring", list({list({group_0, group_1})}), "ideal");
-  const ArrayDesign levels =
-      design(8, 1, "circuit", words({"series 2 bypass", "parallel 2", "series 2"}), "ideal");
-  const ArrayDesign one =
-      design(8, 1, "wiring", list({list({chain(0)}), list({chain(2)})}), "ideal");
-  const std::vector<double> suns = {1.0, 1.0, 0.5, 0.5, 0.5, 0.5, 1.0, 1.0};
-  const auto power_W = [&](const ArrayDesign& array) {
-    return reference::curve(array.wiring, suns, reference::cell()).maximum_power().power_W();
-  };
-  EXPECT_NEAR(power_W(listed), 2.0 * power_W(one), 1e-9);
-  // The serpentine along columns of one cell goes straight on.
-  EXPECT_NEAR(power_W(levels), 2.0 * power_W(one), 1e-9);
-}
-
 // Regular keys, levels and lists give equal wirings.
 TEST(PhotovoltaicWirings, LevelsAreTheRegularKeysInOtherWords) {
   std::vector<double> suns;

@@ -56,8 +56,12 @@ class Stubs(unittest.TestCase):
             if not name.startswith("_") and name != "git_hash":
                 self.assertTrue(getattr(photorque, name).__doc__, name)
 
+    def test_the_oracle_is_part_of_the_package(self):
+        shown = subprocess.run([sys.executable, "-m", "photorque.prove", "--help"], capture_output=True, text=True)
+        self.assertIn("--only-make", shown.stdout, shown.stderr)
+
     @unittest.skipUnless(importlib.util.find_spec("mypy"), "no mypy")
     def test_mypy(self):
-        checked = subprocess.run([sys.executable, "-m", "mypy", "--strict", str(folder)],
+        checked = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--exclude", "photorque/prove/", str(folder)],
                                  capture_output=True, text=True, cwd=folder.parent)
         self.assertEqual(checked.returncode, 0, checked.stdout)

@@ -39,7 +39,7 @@ MapCheck compare(const BinSums& sums, const std::vector<double>& reference, doub
   for (size_t i = 0; i < reference.size(); ++i) {
     if (reference[i] < 0.1 * peak) continue;
     const Estimate e = sums.estimate(i);
-    // The references are themselves precise to 1e-4 (A0) and 7e-4 (A1) of a bin.
+    // The reference is itself precise to 1e-4 of a bin.
     const double error = std::hypot(e.standard_error / bin_area, 3e-4 * reference[i]);
     const double difference = e.value / bin_area * (1 + shift) - reference[i];
     ++lit;
@@ -53,13 +53,10 @@ MapCheck compare(const BinSums& sums, const std::vector<double>& reference, doub
   return check;
 }
 
-class DiscOverSquare
-    : public ::testing::TestWithParam<std::pair<const char*, PillboxDisc::Measure>> {};
-
 // A disc of 0.4 m at z = 1.5 m, pillbox of 1.5 deg, over a 0.5 m square with a black box between.
-TEST_P(DiscOverSquare, MapAgreesWithTheReferenceWithinItsErrors) {
+TEST(DiscOverSquare, MapAgreesWithTheReferenceWithinItsErrors) {
   const auto reference =
-      outside::read_float32(outside::reference_data("optics") / GetParam().first);
+      outside::read_float32(outside::reference_data("optics") / "disc_angle.f32");
   ASSERT_EQ(reference.size(), 10000u);
   Scene scene;
   const auto black = grey_surface("black", 0, 0);
@@ -67,7 +64,7 @@ TEST_P(DiscOverSquare, MapAgreesWithTheReferenceWithinItsErrors) {
       "receiver");
   add(scene, fixtures::box(Vec3(0, -0.02, 0.5), Vec3(0.1, 0.08, 0.55)), black, "box");
   const TraceableScene traceable(std::move(scene));
-  const auto emitter = std::make_shared<PillboxDisc>(1.0, 0.2, 1.5 * degree_rad, GetParam().second);
+  const auto emitter = std::make_shared<PillboxDisc>(1.0, 0.2, 1.5 * degree_rad);
   const Beam beam = fixtures::beam(emitter, Vec3(0, 0, 1.5), Vec3(0, 0, -1));
   const SquareMap map;
   const Receiver* const receivers[] = {&map};
@@ -82,12 +79,8 @@ TEST_P(DiscOverSquare, MapAgreesWithTheReferenceWithinItsErrors) {
   EXPECT_GT(compare(result.sums[0], reference, 0.02).mean_square_z, 1.3);
   RecordProperty("mean_square_z", std::to_string(check.mean_square_z));
 }
-INSTANTIATE_TEST_SUITE_P(CaseA, DiscOverSquare,
-                         ::testing::Values(std::pair{"disc_angle.f32", PillboxDisc::Measure::angle},
-                                           std::pair{"disc_projected.f32",
-                                                     PillboxDisc::Measure::projected}));
 
-// The 16 oblique cases of a faceted spacecraft: ten facets, each lit on its front only, no mutual
+// Four oblique cases of a faceted spacecraft: ten facets, each lit on its front only, no mutual
 // shadows (specular 0.9, diffuse 0.1). Force and torque about the body origin at 0.5 au,
 // P = 1.825262728924288e-05 Pa, made with the facet law and the geometry of Basilisk's test of its
 // faceted radiation-pressure effector.
@@ -100,62 +93,14 @@ const FacetCase facet_cases[] = {
      -28,
      {6.036444185e-05, -2.053871244e-03, -5.645261517e-04},
      {1.499236458e-03, -3.381159990e-03, 1.956073000e-03}},
-    {-10.4,
-     45.2,
-     {3.979436413e-05, -9.107960538e-04, 1.377238871e-04},
-     {6.419300648e-04, -2.364623737e-04, -3.187765357e-03}},
-    {-10.4,
-     -90,
-     {4.725166595e-05, -8.680036807e-04, -2.922236833e-04},
-     {6.098357850e-04, -2.165633464e-03, -3.380331036e-03}},
-    {-10.4,
-     180,
-     {5.654112176e-05, -1.860599236e-03, 5.561482858e-05},
-     {1.354282452e-03, -5.933930688e-04, 1.086348965e-03}},
-    {45.2,
-     -28,
-     {6.628917939e-05, -2.200686925e-03, -1.584414847e-03},
-     {1.609348218e-03, 1.212782691e-03, 1.295402435e-03}},
     {45.2,
      45.2,
      {4.571910166e-05, -1.057611735e-03, -8.821648080e-04},
      {7.520418256e-04, 4.357480307e-03, -3.848435922e-03}},
-    {45.2,
-     -90,
-     {5.317640349e-05, -1.014819362e-03, -1.312112378e-03},
-     {7.199475458e-04, 2.428309217e-03, -4.041001601e-03}},
-    {45.2,
-     180,
-     {6.246585930e-05, -2.007414918e-03, -9.642738665e-04},
-     {1.464394213e-03, 4.000549612e-03, 4.256784001e-04}},
-    {90,
-     -28,
-     {5.397190322e-05, -1.302686570e-03, -1.051488184e-03},
-     {9.358479517e-04, -1.194625250e-03, 5.336404036e-03}},
-    {90,
-     45.2,
-     {3.340182549e-05, -1.596113793e-04, -3.492381449e-04},
-     {7.854155886e-05, 1.950072366e-03, 1.925656789e-04}},
     {90,
      -90,
      {4.085912732e-05, -1.168190062e-04, -7.791857153e-04},
      {4.644727904e-05, 2.090127557e-05, 0.0}},
-    {90,
-     180,
-     {5.014858313e-05, -1.109414562e-03, -4.313472034e-04},
-     {7.908939458e-04, 1.593141671e-03, 4.466680001e-03}},
-    {180,
-     -28,
-     {6.326135903e-05, -2.295282125e-03, -7.036496718e-04},
-     {1.680294618e-03, -2.752931462e-03, 8.697240349e-04}},
-    {180,
-     45.2,
-     {4.269128130e-05, -1.152206935e-03, -1.399632953e-06},
-     {8.229882257e-04, 3.917661544e-04, -4.274114322e-03}},
-    {180,
-     -90,
-     {5.014858313e-05, -1.109414562e-03, -4.313472034e-04},
-     {7.908939458e-04, -1.537404936e-03, -4.466680001e-03}},
     {180,
      180,
      {5.943803893e-05, -2.102010118e-03, -8.350869147e-05},
@@ -213,7 +158,7 @@ class Parallelogram final : public Emitter {
   double power_W_;
 };
 
-TEST(FacetedSpacecraft, ForceAndTorqueOfSixteenArticulations) {
+TEST(FacetedSpacecraft, ForceAndTorqueOfFourArticulations) {
   const double pressure = 1.825262728924288e-05;
   const Vec3 light = Vec3(0.36, -0.8, -0.48).normalized();  // away from the Sun at the origin
   for (const FacetCase& c : facet_cases) {

@@ -42,24 +42,18 @@ class ParallelBeam final : public Emitter {
   Shape shape_;
 };
 
-// Disc of radius R, every point radiating the same pillbox cone: the reference cases A.
+// Disc of radius R, every point radiating the same cone, evenly in angle: the reference case A.
 class PillboxDisc final : public Emitter {
  public:
-  enum class Measure { angle, projected };
-  PillboxDisc(double power_W, double radius_m, double half_angle_rad, Measure measure)
-      : power_W_(power_W),
-        radius_m_(radius_m),
-        half_angle_rad_(half_angle_rad),
-        measure_(measure) {}
+  PillboxDisc(double power_W, double radius_m, double half_angle_rad)
+      : power_W_(power_W), radius_m_(radius_m), half_angle_rad_(half_angle_rad) {}
   double power_W() const override { return power_W_; }
   void emit(const SampleBlock& samples, RayBlock& rays) const override {
     for (int i = 0; i < ray_block; ++i) {
       double f[4];
       for (int d = 0; d < 4; ++d) f[d] = sobol_fraction(samples.bits[static_cast<size_t>(d)][i]);
       const double radius = radius_m_ * std::sqrt(f[0]), around = 2 * pi * f[1];
-      const double theta = measure_ == Measure::angle
-                               ? half_angle_rad_ * std::sqrt(f[2])
-                               : std::asin(std::sin(half_angle_rad_) * std::sqrt(f[2]));
+      const double theta = half_angle_rad_ * std::sqrt(f[2]);
       set_ray(rays, i, {radius * std::cos(around), radius * std::sin(around), 0.0},
               {std::sin(theta) * std::cos(2 * pi * f[3]), std::sin(theta) * std::sin(2 * pi * f[3]),
                std::cos(theta)});
@@ -71,7 +65,6 @@ class PillboxDisc final : public Emitter {
 
  private:
   double power_W_, radius_m_, half_angle_rad_;
-  Measure measure_;
 };
 
 // A rectangle centre ± u/2 ± v/2 with its front along u × v.

@@ -32,8 +32,7 @@ Scene busy_scene() {
 }
 
 Beam wide_cone(double height_m) {
-  const auto emitter = std::make_shared<fixtures::PillboxDisc>(
-      2.5, 0.1, 20 * degree_rad, fixtures::PillboxDisc::Measure::projected);
+  const auto emitter = std::make_shared<fixtures::PillboxDisc>(2.5, 0.1, 20 * degree_rad);
   return fixtures::beam(emitter, Vec3(0.1, -0.2, height_m), Vec3(-0.05, 0.1, -1));
 }
 

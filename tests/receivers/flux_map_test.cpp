@@ -91,20 +91,8 @@ TEST(FluxMap, SideDecidesWhichHitsCount) {
   }
 }
 
-TEST(FluxMap, HitsElsewhereDoNotCount) {
-  Scene scene = scene_of(plate(0, 1, 0, 1));
-  add_instance(scene, plate(0, 1, 0, 1, 2.0), "other");
-  const FluxMapReceiver receiver = receiver_on(scene, 3, 3);
-  std::vector<HitMaker> hits;
-  for (int i = 0; i < 40; ++i) {
-    hits.push_back(power_at(0.5, 0.5, 1.0));
-    hits.back().instance = i % 3 == 0 ? 0 : 1;
-  }
-  EXPECT_EQ(receiver.flux_map(sums_of(receiver, {hits, hits})).incident.power_W.value, 14.0);
-}
-
 TEST(FluxMap, FacingLeavesOutTrianglesTurnedAway) {
-  const Scene scene = scene_of(box(1, 1, 0.1));
+  const Scene scene = scene_of(box({-1, -1, -0.1}, {1, 1, 0.1}));
   SurfaceGridOptions options;
   options.facing_body = Vec3::UnitZ();
   const FluxMapReceiver receiver = receiver_on(scene, 2, 2, options);
@@ -113,8 +101,9 @@ TEST(FluxMap, FacingLeavesOutTrianglesTurnedAway) {
     hits.push_back(power_at(0.5, 0.5, std::pow(2.0, triangle)));
     hits.back().triangle = triangle;
   }
-  // Triangles 2 and 3 of the box are its top.
-  EXPECT_EQ(receiver.flux_map(sums_of(receiver, {hits, hits})).incident.power_W.value, 4.0 + 8.0);
+  // The last two triangles of the box are its top.
+  EXPECT_EQ(receiver.flux_map(sums_of(receiver, {hits, hits})).incident.power_W.value,
+            1024.0 + 2048.0);
 }
 
 TEST(FluxMap, TextureBinsFollowTheCorners) {
@@ -185,9 +174,6 @@ TEST(FluxMap, StandardErrorsComeFromReplicates) {
   EXPECT_NEAR(map.incident.per_bin_W_m2[0].standard_error, std::sqrt(7.0 / 3.0), 1e-14);
   EXPECT_NEAR(map.incident.power_W.value, 7.0, 1e-14);
   EXPECT_NEAR(map.incident.power_W.standard_error, 0.0, 1e-14);
-  const FluxMap last = receiver.flux_map(sums, 2);
-  EXPECT_EQ(last.incident.per_bin_W_m2[0].value, 6.0);
-  EXPECT_EQ(last.incident.per_bin_W_m2[0].standard_error, 0.0);
 }
 
 TEST(FluxStatistics, OfFourKnownBins) {

@@ -5,7 +5,7 @@
 #include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/mirrors.h"
 #include "receivers/gather/bodies/wrench.h"
-#include "tests/receivers/random_lamps.h"
+#include "tests/receivers/gather_lamps.h"
 #include "tests/receivers/receiver_scenes.h"
 #include "tests/receivers/sunlight.h"
 
@@ -93,39 +93,6 @@ TEST(GatherWrench, AShadowTakesItsRectangleOutOfThePlateBelow) {
     EXPECT_GT(stated_N, 0.0);
     EXPECT_LT(stated_N, 2e-4 * force_N.norm());
   }
-}
-
-// A black plate that all light falls on takes up the momentum of the beam, which is that of its
-// axis times the mean cosine.
-TEST(GatherWrench, ABlackPlateTakesUpTheMomentumOfTheWholeBeam) {
-  fixtures::RandomLamps random_lamps(19);
-  int done = 0, precise = 0;
-  for (int i = 0; i < 8; ++i) {
-    const fixtures::Draw d = random_lamps.draw();
-    const auto scene = fixtures::wide_plate(d, 1.0);
-    if (!scene) continue;
-    const TraceableScene traceable(*scene);
-    const Vec3 about_m = d.centre_m + d.height_m * Vec3(0.5, -0.2, 0.1);
-    const WrenchReceiver body = body_of(*scene, about_m);
-    const auto gather = WrenchGather::make(traceable, std::span(&d.beam, 1));
-    if (!gather) continue;  // a beam with an edge
-    const Gathered gathered = gather->wrench({}, body, {.replicates = 2, .threads = 1});
-    EXPECT_EQ(gathered.shadow_rays, 0u);
-    const WrenchEstimate found = direct_of(body, gathered);
-    const DiscLight light(*d.beam.emitter, *d.beam.aperture);
-    const Vec3 momentum_N = light.angles().mean_cosine() / speed_of_light_m_s * Vec3::UnitZ();
-    const double stated_N = found.force_error_N()[0];
-    EXPECT_LT((found.mean.force_N - momentum_N).norm(), 1e-6 * momentum_N.norm() + stated_N)
-        << i << ": " << d.description;
-    const Vec3 torque_N_m = -about_m.cross(momentum_N);
-    EXPECT_LT((found.mean.torque_N_m - torque_N_m).norm(),
-              1e-6 * torque_N_m.norm() + found.torque_error_N_m()[0])
-        << i << ": " << d.description;
-    precise += (found.mean.force_N - momentum_N).norm() < 1e-5 * momentum_N.norm() ? 1 : 0;
-    ++done;
-  }
-  EXPECT_GT(done, 1);
-  EXPECT_GE(precise, done - 1);  // not where a core is far narrower than its halo
 }
 
 // Rays are another route, where bodies shade each other and surfaces follow laws of all sorts.

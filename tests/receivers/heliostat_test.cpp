@@ -26,23 +26,27 @@ struct HeliostatCase {
   const char* name;
   double absorbed_kW, absorbed_3sigma_kW, peak_kW_m2, peak_3sigma_kW_m2, map_peak_kW_m2;
 };
-// One of the five maps of A_1.1.2 is another's; there an even disc of 2 m holds all of 100 kW.
-constexpr HeliostatCase cases[] = {
-    {"A_1.1.2", 99.99758, 0.005633517, 8.073143, 0.09739896, 100.0 / (4.0 * pi)},
-    {"A_1.2.1", 99.98508, 0.00859127, 15.93244, 0.02939985, 15.8700},
+constexpr HeliostatCase usual_cases[] = {
     {"A_1.2.3", 66.8369, 0.005165104, 1.795393, 0.02198667, 1.7686},
-    {"A_2.1", 100.0004, 0.009583849, 8.083774, 0.08859027, 7.9584},
-    {"A_2.3.1", 99.30486, 0.06890336, 6.90404, 0.09570854, 6.8737},
     {"A_2.3.3", 97.97153, 0.05731756, 6.768785, 0.1143731, 6.7278},
     {"B_1.1.1", 97.6562, 0.04090887, 68.66935, 0.1321962, 68.5553},
+    {"B_1.2.4", 11.51386, 0.006200869, 0.2823004, 0.008777287, 0.2733},
+    {"B_2.1.3", 50.81719, 0.05970667, 1.756696, 0.02430461, 1.7303},
+    {"C_1.1", 32857.13, 7.209712, 4180.032, 25.21735, 4158.4479},
+};
+// Other sizes of the same effects, which take two thirds of the time: the table of
+// docs/validation.md holds them. One of the five maps of A_1.1.2 is another's; there an even disc
+// of 2 m holds all of 100 kW.
+constexpr HeliostatCase further_cases[] = {
+    {"A_1.1.2", 99.99758, 0.005633517, 8.073143, 0.09739896, 100.0 / (4.0 * pi)},
+    {"A_1.2.1", 99.98508, 0.00859127, 15.93244, 0.02939985, 15.8700},
+    {"A_2.1", 100.0004, 0.009583849, 8.083774, 0.08859027, 7.9584},
+    {"A_2.3.1", 99.30486, 0.06890336, 6.90404, 0.09570854, 6.8737},
     {"B_1.1.3", 50.88898, 0.0108549, 1.734949, 0.02563425, 1.7072},
     {"B_1.2.2", 45.44831, 0.008599997, 1.690728, 0.02167538, 1.6694},
-    {"B_1.2.4", 11.51386, 0.006200869, 0.2823004, 0.008777287, 0.2733},
     {"B_2.1.1", 97.41373, 0.04808915, 69.28184, 0.2173246, 69.1772},
-    {"B_2.1.3", 50.81719, 0.05970667, 1.756696, 0.02430461, 1.7303},
     {"B_2.2.2", 45.32314, 0.05627249, 1.711636, 0.01965085, 1.6900},
     {"B_2.2.4", 11.41448, 0.005947406, 0.2805586, 0.009679873, 0.2706},
-    {"C_1.1", 32857.13, 7.209712, 4180.032, 25.21735, 4158.4479},
     {"C_2.2", 22753.6, 35.34117, 1756.524, 42.883, 1737.0459},
 };
 
@@ -203,7 +207,11 @@ Flux trace_case(const Layout& layout, uint32_t facets, uint64_t rays) {
     found.bins_kW_m2.push_back(1e-3 * bin.value);
   }
   for (int r = 0; r < options.replicates; ++r) {
-    found.blocks.push_back(blocks_of(map.flux_map(sums, r).absorbed.per_bin_W_m2));
+    BinSums twice{sums.bins, 2, {}};  // an estimate needs two replicates
+    for (int copy = 0; copy < 2; ++copy) {
+      twice.sums.insert(twice.sums.end(), sums.of(r).begin(), sums.of(r).end());
+    }
+    found.blocks.push_back(blocks_of(map.flux_map(twice).absorbed.per_bin_W_m2));
   }
   found.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   return found;
@@ -327,12 +335,15 @@ TEST_P(Heliostats, AgreeWithFiveRayTracers) {
       truth.peak_kW_m2, truth.peak_3sigma_kW_m2, chi2, flux.seconds);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, Heliostats, ::testing::ValuesIn(cases), [](const auto& tested) {
+std::string name_of_case(const ::testing::TestParamInfo<HeliostatCase>& tested) {
   std::string name = tested.param.name;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c == '.'; }, '_');
+  std::ranges::replace(name, '.', '_');
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Heliostats, ::testing::ValuesIn(usual_cases), name_of_case);
+INSTANTIATE_TEST_SUITE_P(DISABLED_Cases, Heliostats, ::testing::ValuesIn(further_cases),
+                         name_of_case);
 
 }  // namespace
 }  // namespace photorque

@@ -55,7 +55,7 @@ double cylinder_drag(double s, double wall_ratio) {
 }
 
 TEST(MolecularFlow, ASphereHasItsPublishedDrag) {
-  const Scene scene = closed(fixtures::unit_sphere(72, 36));
+  const Scene scene = closed(fixtures::sphere(1.0, 36));
   const Vec3 travel(0.6, 0.0, -0.8);
   // The facets lie inside the sphere, by up to 1 − cos(π/72) of its radius.
   constexpr double inside = 3e-3;
@@ -161,7 +161,7 @@ TEST(MolecularFlow, ACoveredSideAlongTheFlowIsInShadow) {
   const WrenchSum alone = in_flow(scene, s, {1.0, 0.3}, travel);
   EXPECT_NEAR(alone[0], 2.0 * shear, 1e-12);
   EXPECT_NEAR(alone[2], 0.0, 1e-12);
-  Mesh lid = fixtures::box(2.0, 2.0, 0.05);
+  Mesh lid = fixtures::box({-2.0, -2.0, -0.05}, {2.0, 2.0, 0.05});
   for (Vec3& vertex : lid.vertices_m) vertex.z() += 0.06;
   lid.encloses = true;
   const double lid_alone = in_flow(closed(lid), s, {1.0, 0.3}, travel)[0];

@@ -55,17 +55,6 @@ Settings on_array() {
 
 class EveryReceiver : public ::testing::TestWithParam<ReceiverKind> {};
 
-TEST_P(EveryReceiver, HasBins) {
-  EXPECT_GT(GetParam().make(on_array(), two_plates()).receiver->bins(), 0u);
-}
-
-TEST_P(EveryReceiver, AddsNothingForNoHits) {
-  const auto receiver = GetParam().make(on_array(), two_plates()).receiver;
-  std::vector<double> sums(receiver->bins(), 3.25);
-  receiver->score(*hits_of({}), sums);
-  EXPECT_THAT(sums, ::testing::Each(3.25));
-}
-
 TEST_P(EveryReceiver, AddsBatchesInAnyGrouping) {
   const auto receiver = GetParam().make(on_array(), two_plates()).receiver;
   const std::vector<HitMaker> all = random_hits(3, 250);

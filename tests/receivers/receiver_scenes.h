@@ -10,17 +10,13 @@
 
 #include "core/constants.h"
 #include "raytrace/receiver.h"
-#include "raytrace/scene.h"
+#include "tests/raytrace/test_scenes.h"
 
 namespace photorque::fixtures {
 
 // The rectangle [x0, x1] × [y0, y1] at height z, front up, texture coordinates from 0 to 1.
 inline Mesh plate(double x0, double x1, double y0, double y1, double z = 0.0) {
-  Mesh mesh;
-  mesh.vertices_m = {{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  mesh.uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-  return mesh;
+  return rectangle({0.5 * (x0 + x1), 0.5 * (y0 + y1), z}, {x1 - x0, 0, 0}, {0, y1 - y0, 0});
 }
 
 // Adds a mesh with separate vertices.
@@ -59,40 +55,6 @@ inline Mesh ring(uint32_t corners, double inner_m, double outer_m) {
   return mesh;
 }
 
-// A unit sphere cut along meridians and parallels, front outside.
-inline Mesh unit_sphere(uint32_t meridians, uint32_t parallels) {
-  Mesh mesh;
-  for (uint32_t j = 0; j <= parallels; ++j) {
-    const double polar = pi * j / parallels;
-    for (uint32_t i = 0; i < meridians; ++i) {
-      const double around = 2 * pi * i / meridians;
-      mesh.vertices_m.emplace_back(std::sin(polar) * std::cos(around),
-                                   std::sin(polar) * std::sin(around), std::cos(polar));
-    }
-  }
-  for (uint32_t j = 0; j < parallels; ++j) {
-    for (uint32_t i = 0; i < meridians; ++i) {
-      const uint32_t a = j * meridians + i, b = j * meridians + (i + 1) % meridians;
-      if (j > 0) mesh.triangles.push_back({a, a + meridians, b});
-      if (j + 1 < parallels) mesh.triangles.push_back({b, a + meridians, b + meridians});
-    }
-  }
-  return mesh;
-}
-
-// The box [−x, x] × [−y, y] × [−z, z], front outside.
-inline Mesh box(double x, double y, double z) {
-  Mesh mesh;
-  for (const double k : {-z, z}) {
-    for (const double j : {-y, y}) {
-      for (const double i : {-x, x}) mesh.vertices_m.emplace_back(i, j, k);
-    }
-  }
-  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  return mesh;
-}
-
 inline uint32_t add_instance(Scene& scene, Mesh mesh, const std::string& path,
                              const Affine& body_from_mesh = Affine::Identity()) {
   Instance instance;
@@ -128,7 +90,6 @@ inline void add_hit(Hits& hits, const HitMaker& hit) {
   hits.instance.at(i) = hit.instance;
   hits.triangle[i] = hit.triangle;
   hits.front[i] = hit.front ? 1 : 0;
-  hits.depth[i] = 0;
   hits.cosine[i] = hit.cosine;
   hits.bands = static_cast<int>(hit.incident_W.size());
   for (size_t band = 0; band < hit.incident_W.size(); ++band) {

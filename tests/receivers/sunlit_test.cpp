@@ -179,7 +179,7 @@ Scene drawn_scene(std::mt19937& random) {
   for (int i = 0; i < 3; ++i) {
     const Vec3 half_m{uniform(0.1, 0.4), uniform(0.1, 0.4), uniform(0.02, 0.4)};
     const Vec3 centre_m{uniform(-0.6, 0.6), uniform(-0.6, 0.6), uniform(-0.6, 0.6)};
-    Mesh box = fixtures::box(half_m.x(), half_m.y(), half_m.z());
+    Mesh box = fixtures::box(-half_m, half_m);
     const Quat turned = Quat{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
     const Mat3 rotation = turned.normalized().toRotationMatrix();
     for (Vec3& vertex : box.vertices_m) vertex = centre_m + rotation * vertex;
@@ -231,7 +231,12 @@ Eigen::Array2d against_rays(const TraceableScene& known, const TraceableScene& t
       }
     };
     add(receiver.direct(result.sums[0]), own.direct, false);
-    add(receiver.bounced(result.sums[0]), bounced, true);
+    BinSums later = result.sums[0];
+    for (int r = 0; r < later.replicates; ++r) {
+      const auto first = later.sums.begin() + r * static_cast<std::ptrdiff_t>(later.bins);
+      std::fill_n(first, receiver.direct_entries(), 0.0);
+    }
+    add(receiver.total(later), bounced, true);
   }
   return squares;
 }

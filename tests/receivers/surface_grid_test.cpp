@@ -15,7 +15,7 @@ using fixtures::plate;
 using fixtures::polygon;
 using fixtures::ring;
 using fixtures::scene_of;
-using fixtures::unit_sphere;
+using fixtures::sphere;
 using ::testing::HasSubstr;
 
 constexpr uint32_t first[] = {0};
@@ -159,7 +159,7 @@ TEST(SurfaceGrid, ReportsTheAreaInLayers) {
 }
 
 TEST(SurfaceGrid, CurvedSurfaceKeepsItsTrueArea) {
-  const Mesh mesh = unit_sphere(48, 24);
+  const Mesh mesh = sphere(1.0, 24);
   Mesh upper = mesh;
   std::erase_if(upper.triangles, [&](const auto& t) {
     return mesh.vertices_m[t[0]].z() + mesh.vertices_m[t[1]].z() + mesh.vertices_m[t[2]].z() < 0;
@@ -176,7 +176,7 @@ TEST(SurfaceGrid, CurvedSurfaceKeepsItsTrueArea) {
 }
 
 TEST(SurfaceGrid, ClosedBodyNeedsADirection) {
-  const Scene scene = scene_of(box(0.2, 0.1, 0.01));
+  const Scene scene = scene_of(box({-0.2, -0.1, -0.01}, {0.2, 0.1, 0.01}));
   EXPECT_THAT(refusal_of([&] { grid_over(scene, 10, 10); }), HasSubstr("closed surface"));
   const SurfaceGrid top = grid_over(scene, 10, 10, facing(Vec3::UnitZ()));
   EXPECT_NEAR(top.total_area_m2(), 0.4 * 0.2, 1e-15);  // neither the bottom nor the sides

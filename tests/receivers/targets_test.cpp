@@ -2,7 +2,7 @@
 // gives.
 #include <gtest/gtest.h>
 
-#include "raytrace/parallel_light.h"
+#include "raytrace/emitter.h"
 #include "raytrace/tracing/targets.h"
 #include "receivers/flux_map.h"
 #include "tests/receivers/gather_lamps.h"
@@ -43,7 +43,7 @@ Found trace_sun(const Scene& scene, const Beam& sun, const RigidTransform& lab_f
   TraceOptions options{.rays = rays};
   std::atomic<uint64_t> first_hits = 0;
   options.observe = [&](const HitOrigin&, const Hits& hits) {
-    if (hits.depth[0] == 0) first_hits += static_cast<uint64_t>(hits.count);
+    if (hits.depth == 0) first_hits += static_cast<uint64_t>(hits.count);
   };
   const TraceResult result =
       trace(traceable, lab_from_body, std::span(&sun, 1), receivers, options);

@@ -57,7 +57,7 @@ rays = 65536
 [array]
 cells = "mesh"
 )";
-  const Experiment experiment = read_experiment(folder / "array.toml");
+  const Experiment experiment = resolve_experiment(read_experiment_file(folder / "array.toml"));
   const FluxMapReceiver& map = *experiment.receivers[0].flux_map;
   const Settings array = experiment.file.others("array")[0];
   const auto places = read_cell_places(array, experiment.scene, map.grid());

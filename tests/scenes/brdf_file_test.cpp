@@ -1,6 +1,4 @@
 // Tables of measured scattering, from text to the surface of a material.
-#include "scenes/surfaces/brdf_file.h"
-
 #include "core/constants.h"
 #include "gltf_test_model.h"
 #include "raytrace/surfaces/bsdf.h"
@@ -49,15 +47,6 @@ TEST(BrdfFile, NamesTheLineOfTheMistake) {
   EXPECT_THAT(brdf_error(replaced(small_table, "0,0,0,0.1,0\r\n", "")),
               HasSubstr("found no row for incidence 0, scatter 0, azimuth 0 deg"));
   EXPECT_THAT(brdf_error("# nothing\n"), HasSubstr("scan.csv: found no rows"));
-}
-
-TEST(BrdfFile, EveryTruncationIsReadOrRefused) {
-  for (size_t length = 0; length < small_table.size(); ++length) {
-    try {
-      read_brdf(small_table.substr(0, length), "cut");
-    } catch (const InputError&) {
-    }
-  }
 }
 
 Settings material_with(SettingsNode::Table table) {

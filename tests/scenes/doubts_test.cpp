@@ -1,8 +1,8 @@
 // Scenes that can be traced and whose results are doubtful.
-#include "scenes/experiment/doubts.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "scenes/experiment/experiment.h"
 
 namespace photorque {
 namespace {

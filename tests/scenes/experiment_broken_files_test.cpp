@@ -61,7 +61,7 @@ std::string join(const std::vector<std::string>& lines) {
 }
 
 std::string message_of(const std::filesystem::path& path) {
-  return refusal_of([&] { read_experiment(path); });
+  return refusal_of([&] { resolve_experiment(read_experiment_file(path)); });
 }
 
 class BrokenExperiment : public testing::TestWithParam<Broken> {};

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/constants.h"
+#include "core/provenance.h"
 #include "scenes/experiment/experiment.h"
 #include "tests/files.h"
 
@@ -16,7 +17,8 @@ using testing::Pair;
 const std::filesystem::path scenes = std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "scenes";
 
 TEST(Experiment, StasisIsReadAsWritten) {
-  const Experiment experiment = read_experiment(scenes / "stasis/nominal.toml");
+  const Experiment experiment =
+      resolve_experiment(read_experiment_file(scenes / "stasis/nominal.toml"));
   ASSERT_EQ(experiment.beams.size(), 49u);
   double power_W = 0.0;
   Vec3 centre_m = Vec3::Zero();
@@ -44,9 +46,11 @@ TEST(Experiment, StasisIsReadAsWritten) {
 
 // A model whose origin is elsewhere: every vertex moves by the same, lamps stay where they are.
 TEST(Experiment, CentreOfRotationBecomesTheOrigin) {
-  const Experiment as_drawn = read_experiment(scenes / "stasis/nominal.toml");
+  const Experiment as_drawn =
+      resolve_experiment(read_experiment_file(scenes / "stasis/nominal.toml"));
   const std::vector<std::string> overrides = {"scene.centre_of_rotation_mm=[3, -2, 12.5]"};
-  const Experiment moved = read_experiment(scenes / "stasis/nominal.toml", overrides);
+  const Experiment moved =
+      resolve_experiment(read_experiment_file(scenes / "stasis/nominal.toml", overrides));
   ASSERT_EQ(moved.scene.instances.size(), as_drawn.scene.instances.size());
   for (size_t i = 0; i < moved.scene.instances.size(); ++i) {
     const auto corner = [&](const Scene& scene) {
@@ -60,32 +64,12 @@ TEST(Experiment, CentreOfRotationBecomesTheOrigin) {
             as_drawn.beams[7].lab_from_emitter.translation_m);
 }
 
-TEST(Experiment, EveryCommittedOneIsRead) {
-  int found = 0;
-  for (const auto& folder : std::filesystem::directory_iterator(scenes)) {
-    if (!folder.is_directory()) continue;
-    for (const auto& file : std::filesystem::directory_iterator(folder)) {
-      if (file.path().extension() != ".toml" || file.path().filename() == "parameters.toml") {
-        continue;
-      }
-      const ExperimentFile read = read_experiment_file(file.path());
-      const bool is_for_a_camera_alone = read.sources.empty() && read.settings.has("platform");
-      if (!read.scene_file || is_for_a_camera_alone) continue;  // without light
-      ++found;
-      EXPECT_NO_THROW({
-        const Experiment experiment = read_experiment(file.path());
-        EXPECT_TRUE(experiment.flow || !experiment.receivers.empty()) << file.path();
-      }) << file.path();
-    }
-  }
-  EXPECT_GE(found, 5);
-}
-
 TEST(Experiment, OverridesReachSourcesReceiversAndOptions) {
   const std::vector<std::string> overrides = {"source[0].total_power_W=4.9",
                                               "receiver[0].name=cells", "attitude.tilt_deg=30",
                                               "trace.rays=1e6", "trace.seed=7"};
-  const Experiment experiment = read_experiment(scenes / "stasis/nominal.toml", overrides);
+  const Experiment experiment =
+      resolve_experiment(read_experiment_file(scenes / "stasis/nominal.toml", overrides));
   EXPECT_NEAR(experiment.beams[0].emitter->power_W(), 0.1, 1e-12);
   EXPECT_EQ(experiment.receivers[0].name, "cells");
   EXPECT_EQ(experiment.file.trace.rays, 1000000u);
@@ -96,12 +80,12 @@ TEST(Experiment, OverridesReachSourcesReceiversAndOptions) {
 }
 
 TEST(Experiment, MaterialsMayBeReplacedByName) {
-  const Experiment experiment = read_experiment(
+  const Experiment experiment = resolve_experiment(read_experiment_file(
       test_file("mirror.toml",
                 "[scene]\nfile = \"" + (scenes / "stasis/stasis.gltf").string() +
                     "\"\n"
                     "[[material]]\nname = \"solar_cell\"\nabsorptance = 0.25\nspecular = 0.75\n"
-                    "[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\n"));
+                    "[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\n")));
   const auto array = experiment.scene.instances_of("solar_array");
   ASSERT_EQ(array.size(), 1u);
   const uint32_t surface = experiment.scene.instances[array[0]].front_surface;
@@ -111,10 +95,28 @@ TEST(Experiment, MaterialsMayBeReplacedByName) {
 
 TEST(Experiment, InputsNameEveryFileAndOverride) {
   const std::vector<std::string> overrides = {"trace.seed=7"};
-  const Experiment experiment = read_experiment(scenes / "stasis/nominal.toml", overrides);
+  const Experiment experiment =
+      resolve_experiment(read_experiment_file(scenes / "stasis/nominal.toml", overrides));
   EXPECT_THAT(experiment.inputs, Contains(Pair("nominal.toml", testing::SizeIs(32))));
   EXPECT_THAT(experiment.inputs, Contains(Pair("stasis.gltf", testing::SizeIs(32))));
   EXPECT_THAT(experiment.inputs, Contains(Pair("--set trace.seed=7", testing::SizeIs(32))));
+}
+
+TEST(Experiment, LampFilesBesideItAreFoundAndHashedAmongItsInputs) {
+  const std::string lamp = read_file(outside::reference_data("beams/gauss3.ies"));
+  const auto toml =
+      test_file("lamp.toml", "[scene]\nfile = \"" + (scenes / "stasis/stasis.gltf").string() +
+                                 "\"\n[[source]]\nkind = \"ies\"\nfile = \"lamp.ies\"\n"
+                                 "power_W = 3\nwavelength_nm = 730\nposition_m = [0, 0, 2]\n"
+                                 "direction = [0, 0, -1]\n");
+  test_file("lamp.ies", lamp);
+  const Experiment experiment = resolve_experiment(read_experiment_file(toml));
+  ASSERT_EQ(experiment.beams.size(), 1u);
+  EXPECT_EQ(experiment.beams[0].emitter->power_W(), 3.0);
+  EXPECT_THAT(experiment.inputs, Contains(Pair("lamp.ies", content_hash(lamp))));
+  EXPECT_THROW(resolve_experiment(read_experiment_file(
+                   toml, std::vector<std::string>{"source[0].file=other.ies"})),
+               InputError);
 }
 
 TEST(ExperimentFile, TablesOfOthersKeepTheirOwnRecordOfKeys) {

@@ -67,7 +67,8 @@ fs::path folder_with(const json& file, const std::string& experiment = "") {
 }
 
 Experiment lit(const json& file, const std::string& source) {
-  return read_experiment(folder_with(file, "[[source]]\n" + source) / "lamps.toml");
+  return resolve_experiment(
+      read_experiment_file(folder_with(file, "[[source]]\n" + source) / "lamps.toml"));
 }
 
 TEST(GltfLights, HavePositionAndLightOfTheFile) {
@@ -182,7 +183,7 @@ TEST(GltfLights, AProfileIsAMeasuredLampTurnedAsItsNode) {
                                         "[[source]]\nlight = \"measured\"\npower_W = 2\n"
                                         "wavelength_nm = 730\n");
     std::ofstream(folder / "leaning.ies") << leaning_ies;
-    const Experiment experiment = read_experiment(folder / "lamps.toml");
+    const Experiment experiment = resolve_experiment(read_experiment_file(folder / "lamps.toml"));
     ASSERT_EQ(experiment.beams.size(), 1u);
     const Beam& beam = experiment.beams[0];
     EXPECT_EQ(beam.emitter->power_W(), 2.0);  // candela and multipliers are for pictures

@@ -260,13 +260,6 @@ TEST(GltfGeometry, LeavesOutTrianglesWithoutAreaAndUnusedVertices) {
   EXPECT_THAT(read.notices, Contains("3 triangle(s) without area left out"));
 }
 
-TEST(GltfGeometry, LeavesOutCollinearTriangles) {
-  const TestModel model = unindexed(triangles, {0, 0, 0, 0.1f, 0.1f, 0.1f, 0.2f, 0.2f, 0.2f});
-  const GltfModel read = model.read();
-  EXPECT_TRUE(read.scene.instances.empty());
-  EXPECT_THAT(read.notices, Contains("1 triangle(s) without area left out"));
-}
-
 // A corner that is damaged makes a needle of its triangle, and half of a plate went with it unseen.
 TEST(GltfGeometry, RefusesCornersBeyondEverythingThoughTheirTrianglesAreNeedles) {
   const TestModel model =

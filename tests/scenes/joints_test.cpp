@@ -24,7 +24,7 @@ std::string error_of(const std::string& joint) {
 
 // A quarter turn about y takes (x, y, z) to (z, y, −x): the wings' cells then look along +x.
 TEST(Joints, TurnTheirPartsAndNothingElse) {
-  const Experiment rest = read_experiment(spacecraft);
+  const Experiment rest = resolve_experiment(read_experiment_file(spacecraft));
   const Experiment turned = resolve_experiment(with_joint(
       "{nodes=[\"wing_1\", \"wing_2\", \"solar_array\"], axis=[0, 2, 0], angle_deg=90}"));
   size_t moved = 0;

@@ -2,7 +2,7 @@
 
 #include "core/constants.h"
 #include "sampling.h"
-#include "sources/lamps/disc.h"
+#include "sources/lamps/settings.h"
 
 namespace photorque {
 namespace {
@@ -97,7 +97,7 @@ TEST(BeamShape, OfParallelLightIsCollimated) {
 TEST(BeamShape, LinesAndTableNameEveryDifferentEmitterOnce) {
   std::vector<Beam> beams;
   for (const SourceKind& kind : all_source_kinds()) {
-    for (Beam& beam : kind.make(test::settings_of(kind.example), test::with_files()))
+    for (Beam& beam : kind.make(test::settings_of(test::example_of(kind.name)), test::with_files()))
       beams.push_back(beam);
   }
   const Table table = beam_shape_table(beams);

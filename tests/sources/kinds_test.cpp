@@ -11,14 +11,14 @@ using test::settings_of;
 using test::sorted_angles;
 
 std::vector<Beam> beams_of(const SourceKind& kind) {
-  return kind.make(settings_of(kind.example), test::with_files());
+  return kind.make(settings_of(test::example_of(kind.name)), test::with_files());
 }
 
 TEST(EverySource, HasANameASummaryAndAReadableExample) {
   for (const SourceKind& kind : all_source_kinds()) {
     EXPECT_FALSE(kind.name.empty());
     EXPECT_FALSE(kind.summary.empty() || kind.summary.ends_with('.')) << kind.name;
-    const Settings settings = settings_of(kind.example);
+    const Settings settings = settings_of(test::example_of(kind.name));
     EXPECT_FALSE(kind.make(settings, test::with_files()).empty()) << kind.name;
     EXPECT_NO_THROW(settings.finish()) << kind.name;
   }
@@ -32,7 +32,7 @@ TEST(EverySource, OfAFileTurnsWithItsBeamFromStraightDown) {
     const SourceKind kind = test::kind_called(name);
     const auto x_of = [&](const Vec3& beam, double turn_deg) {
       const SettingsNode::Table keys =
-          test::changed(kind.example,
+          test::changed(test::example_of(kind.name),
                         {{"position_m", test::vector_node(-beam.x(), -beam.y(), -beam.z())},
                          {"aim_m", test::vector_node(0, 0, 0)},
                          {"turn_deg", {turn_deg}}},
@@ -56,7 +56,7 @@ TEST(EverySource, OfAFileTurnsWithItsBeamFromStraightDown) {
 TEST(EverySource, TakesItsNameFromTheUser) {
   for (const SourceKind& kind : all_source_kinds()) {
     for (const Beam& beam :
-         kind.make(settings_of(test::changed(kind.example, {{"name", {"lamp 7"}}})),
+         kind.make(settings_of(test::changed(test::example_of(kind.name), {{"name", {"lamp 7"}}})),
                    test::with_files())) {
       EXPECT_TRUE(beam.name.starts_with("lamp 7")) << beam.name;
     }
@@ -138,7 +138,8 @@ TEST(EverySource, PutsAllItsPowerInTheSpectrum) {
 
 TEST(EverySource, RejectsUnknownKeys) {
   for (const SourceKind& kind : all_source_kinds()) {
-    const Settings settings = settings_of(test::changed(kind.example, {{"colour", {"red"}}}));
+    const Settings settings =
+        settings_of(test::changed(test::example_of(kind.name), {{"colour", {"red"}}}));
     kind.make(settings, test::with_files());
     EXPECT_THROW(settings.finish(), InputError) << kind.name;
   }
@@ -146,7 +147,8 @@ TEST(EverySource, RejectsUnknownKeys) {
 
 TEST(EverySource, RefusesADirectionWithoutLength) {
   for (const SourceKind& kind : all_source_kinds()) {
-    const auto table = test::changed(kind.example, {{"direction", test::vector_node(0, 0, 0)}});
+    const auto table =
+        test::changed(test::example_of(kind.name), {{"direction", test::vector_node(0, 0, 0)}});
     EXPECT_THROW(kind.make(settings_of(table), test::with_files()), InputError) << kind.name;
   }
 }

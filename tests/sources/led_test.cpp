@@ -1,6 +1,6 @@
 #include "core/constants.h"
 #include "sampling.h"
-#include "sources/lamps/disc.h"
+#include "sources/lamps/settings.h"
 #include "tests/refusal.h"
 
 namespace photorque {

@@ -4,7 +4,7 @@
 #include "core/constants.h"
 #include "core/numerics/random.h"
 #include "sampling.h"
-#include "sources/lamps/disc.h"
+#include "sources/lamps/settings.h"
 #include "sources/profiles/beam_shape.h"
 #include "sources/profiles/inverse_flux.h"
 #include "sources/profiles/sampling.h"

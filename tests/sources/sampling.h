@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -52,6 +53,64 @@ inline SettingsNode::Table changed(SettingsNode::Table table, SettingsNode::Tabl
   return table;
 }
 
+// Keys of a typical source of each kind, for the laws that every source obeys.
+inline SettingsNode::Table example_of(const std::string& kind) {
+  const std::map<std::string, SettingsNode::Table> examples = {
+      {"led",
+       {{"power_W", {2.0}},
+        {"aperture_diameter_m", {0.02}},
+        {"profile", {"gaussian"}},
+        {"fwhm_deg", {3.0}},
+        {"halo_fraction", {0.2}},
+        {"halo_fwhm_deg", {12.0}},
+        {"wavelength_nm", {730.0}},
+        {"position_m", vector_node(0.0, 0.0, 1.5)},
+        {"aim_m", vector_node(0.0, 0.0, 0.0)}}},
+      {"led_array",
+       {{"layout", {"ring"}},
+        {"count", {int64_t{6}}},
+        {"ring_radius_m", {0.2}},
+        {"position_m", vector_node(0.0, 0.0, 1.5)},
+        {"aim", {"converging"}},
+        {"aim_m", vector_node(0.0, 0.0, 0.0)},
+        {"total_power_W", {90.0}},
+        {"aperture_diameter_m", {0.03}},
+        {"profile", {"super_gaussian"}},
+        {"fwhm_deg", {3.0}},
+        {"order", {4.0}},
+        {"wavelength_nm", {730.0}}}},
+      {"laser",
+       {{"power_W", {0.005}},
+        {"wavelength_nm", {633.0}},
+        {"waist_radius_m", {0.0005}},
+        {"divergence_half_angle_deg", {0.1}},
+        {"position_m", vector_node(0.0, 0.0, 1.5)},
+        {"direction", vector_node(0.0, 0.0, -1.0)}}},
+      {"sun", {{"direction", vector_node(0.3, 0.0, -1.0)}}},
+      {"solar_simulator",
+       {{"footprint_diameter_m", {0.6}},
+        {"collimation_half_angle_deg", {2.0}},
+        {"nonuniformity", {0.05}},
+        {"position_m", vector_node(0.0, 0.0, 0.0)},
+        {"direction", vector_node(0.3, 0.0, -1.0)}}},
+      {"ies",
+       {{"polar_deg", {SettingsNode::Array{{0.0}, {5.0}, {10.0}, {20.0}, {40.0}, {90.0}}}},
+        {"intensity", {SettingsNode::Array{{1.0}, {0.9}, {0.6}, {0.2}, {0.05}, {0.0}}}},
+        {"power_W", {2.0}},
+        {"aperture_diameter_m", {0.02}},
+        {"wavelength_nm", {730.0}},
+        {"position_m", vector_node(0.0, 0.0, 1.5)},
+        {"direction", vector_node(0.0, 0.0, -1.0)}}},
+      {"ray_file",
+       {{"file", {"lamp.tm25ray"}},
+        {"power_W", {2.0}},
+        {"wavelength_nm", {730.0}},
+        {"position_m", vector_node(0.0, 0.0, 1.5)},
+        {"direction", vector_node(0.0, 0.0, -1.0)}}},
+  };
+  return examples.at(kind);
+}
+
 struct Ray {
   Vec3 origin_m;
   Vec3 direction;
@@ -83,7 +142,7 @@ inline SourceContext with_files() {
   const std::filesystem::path file = context.folder / "lamp.tm25ray";
   if (std::filesystem::exists(file)) return context;
   RaySet set;
-  const auto lamp = make_beams("led", kind_called("led").example).front().emitter;
+  const auto lamp = make_beams("led", example_of("led")).front().emitter;
   for (const Ray& ray : rays_of(*lamp, 65536)) {
     set.rays.push_back({ray.origin_m, ray.direction, 1.0, 0.0});
   }

@@ -26,16 +26,5 @@ TEST(AddedVerb, IsReadWithItsOptionAndRun) {
   EXPECT_GT(std::count(text.begin(), text.end(), '\n'), 2);
 }
 
-TEST(AddedVerb, RejectsUnknownInput) {
-  const std::vector<Verb> verbs = all_verbs();
-  std::vector<std::string> words = {"photorque", "count", "lab.toml", "--facets"};
-  std::vector<char*> line;
-  for (std::string& word : words) line.push_back(word.data());
-  testing::internal::CaptureStderr();
-  const CommandLine read = read_command_line(static_cast<int>(line.size()), line.data(), verbs);
-  EXPECT_EQ(read.status, 2);
-  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("--facets"));
-}
-
 }  // namespace
 }  // namespace photorque

@@ -62,6 +62,31 @@ TEST_F(ArrayCommand, AParameterWithoutAnyErrorIsNotDetermined) {
   EXPECT_THAT(table, testing::Not(HasSubstr("inf")));
 }
 
+// The names of the columns in numbered lines above the rows, as in files of LOANA.
+TEST_F(ArrayCommand, NamesInNumberedLinesAreThoseOfColumns) {
+  std::string rows;
+  const std::string curve = lit_curve(1.0);
+  for (const std::string_view line :
+       lines_of(std::string_view(curve).substr(curve.find('\n') + 1))) {
+    if (!line.empty()) rows += std::string(line) + ",25,-2.67\n";
+  }
+  std::ranges::replace(rows, ',', '\t');
+  write("plain.csv", curve);
+  write(
+      "32.lgt",
+      "[General]\nDate:\t24/06/21\n\n[Measurement]\nLabel1:\tVoltage\t[V]\nLabel2:\tCurrent\t[A]\n"
+      "Label3:\tTemperature\t[°C]\nLabel4:\tMonitor\t[V]\n\n**Data**\n" +
+          rows);
+  std::vector<std::string> found;
+  for (const char* file : {"plain.csv", "32.lgt"}) {
+    fit("curves = [\"" + std::string(file) + "\"]\ncells_in_series = 1\n");
+    const std::string table = file_text(at("out/parameters.csv"));
+    found.push_back(table.substr(table.find("\nphotocurrent_A"), 30));
+  }
+  EXPECT_THAT(found[0], HasSubstr("photocurrent_A,value,"));
+  EXPECT_EQ(found[0], found[1]);
+}
+
 // Half-cut module under uneven light: twice the power of one of its two groups.
 TEST_F(ArrayCommand, TwinModulesAreOneCircuit) {
   write("plate.obj", lit_plate);
@@ -327,22 +352,6 @@ TEST_F(ArrayCommand, ASheetWithStandardAndOperatingConditionsIsRead) {
     ideality.push_back(value(nlohmann::json::parse(got.out), "ideality"));
   }
   EXPECT_NEAR(ideality[0], ideality[1], 1e-4 * ideality[1]);
-}
-
-TEST_F(ArrayCommand, ACompressedCurveIsTheSameCurve) {
-  std::string rows = "voltage_V,current_A\n";
-  for (int i = 0; i <= 60; ++i) {
-    const double volt = 0.01 * i;
-    rows +=
-        std::to_string(volt) + "," + std::to_string(1.0 - 1e-10 * std::exp(volt / 0.0267)) + "\n";
-  }
-  write("plain.csv", rows);
-  write("packed.csv.gz", gzip(rows));
-  std::vector<std::string> outputs;
-  for (const char* file : {"plain.csv", "packed.csv.gz"}) {
-    outputs.push_back(fit(std::string("curves = [\"") + file + "\"]\n").out);
-  }
-  EXPECT_EQ(outputs[0], outputs[1]);
 }
 
 TEST_F(ArrayCommand, ALeakThatDoesNotShowIsALowerLimit) {

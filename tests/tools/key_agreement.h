@@ -66,8 +66,15 @@ class Readers {
 
   void try_all(const std::filesystem::path& file) {
     SettingsNode root = parsed(file);
-    std::vector<std::string> choices;
-    try_table(file, root, std::get<SettingsNode::Table>(root.value), tables_, "", "");
+    auto& tables = std::get<SettingsNode::Table>(root.value);
+    // One lamp at a time: every key reads the whole file again.
+    const auto lamps = tables.find("source");
+    const SettingsNode all = lamps != tables.end() ? lamps->second : SettingsNode{};
+    const auto* each = std::get_if<SettingsNode::Array>(&all.value);
+    for (size_t i = 0; i < (each != nullptr ? each->size() : 1); ++i) {
+      if (each != nullptr) lamps->second.value = SettingsNode::Array{(*each)[i]};
+      try_table(file, root, tables, tables_, "", "");
+    }
   }
 
   // Declared keys that no reader knows as they are declared.

@@ -79,7 +79,7 @@ TEST_F(OpticalTruth, SunlightOnAMillimetreTenKilometresAwayIsRight) {
             "absorptance = 1\n[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\n"
             "irradiance_W_m2 = 1000\nangular_radius_deg = 0\n"
             "[[receiver]]\nnode = \"plate\"\nbins = [2, 2]\n"
-            "[torque_map]\nazimuth_step_deg = 90\nelevation_step_deg = 90\n");
+            "[torque_map]\nazimuth_step_deg = 10\nelevation_step_deg = 10\n");
   write("far.obj",
         "v 10000 0 0\nv 10000.001 0 0\nv 10000.001 0.001 0\nv 10000 0.001 0\no plate\nf 1 2 3 4\n");
   succeed("check " + file);

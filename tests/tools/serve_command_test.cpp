@@ -152,12 +152,6 @@ TEST_F(Lockstep, SendsReadingsOfAMarkerCamera) {
   expect_the_run_again("");
 }
 
-// One row of commands would be no recording.
-TEST_F(Lockstep, IsTheSameWithoutAnyCommand) {
-  in_lockstep(" --set propagate.duration_s=1", [](const auto&) { return ClientTorque{0, 0, 0}; });
-  expect_the_run_again(" --set propagate.duration_s=1");
-}
-
 // Delays of 5 and 13 ms are one and three ticks of 6.25 ms: readings come a tick later, and a
 // command acts three ticks after the tick that it answers.
 TEST_F(Lockstep, LinksDelayByWholeTicks) {
@@ -303,29 +297,6 @@ TEST_F(Paced, KeepsTheClockAndReportsDeadlines) {
   EXPECT_TRUE(files("s").contains("deadlines.png"));
   // Whenever the commands came, what acted is known, and the run can be repeated.
   expect_the_run_again(" --set propagate.duration_s=1");
-}
-
-// Twenty thousand packets of nonsense while the run goes on: none acts, refused ones are counted.
-// (A million at the door itself: realtime_test.cpp.)
-TEST_F(Paced, IsNotMovedByNonsense) {
-  uint64_t word = 88172645463325252ull;
-  const auto law = [&](const photorque_measurement_packet&) -> ClientTorque { return {0, 0, 0}; };
-  std::thread noise([&] {
-    const int port = port_when_known();
-    const ServeClient stranger(port);
-    std::array<uint64_t, 16> bytes{};
-    for (int i = 0; i < 20000; ++i) {
-      for (uint64_t& w : bytes) w = (word ^= word << 13, word ^= word >> 7, word ^= word << 17);
-      stranger.send_bytes(bytes.data(), word % sizeof bytes);
-    }
-  });
-  serve(experiment_ + " --set propagate.duration_s=1 --out " + at("s"), law);
-  noise.join();
-  EXPECT_GT(figure("packets_refused", "s"), 0.0);
-  for (const auto& row : rows_of(at("s/commands.csv"))) {
-    EXPECT_EQ(row[1], 0.0);
-    EXPECT_EQ(row[3], 0.0);
-  }
 }
 
 TEST_F(Paced, WrongInputIsOneLineAndExitTwo) {

@@ -4,7 +4,7 @@
 
 #include "core/constants.h"
 #include "tests/tools/command_test.h"
-#include "tools/supply/report.h"
+#include "tools/supply/trade.h"
 
 namespace photorque {
 namespace {

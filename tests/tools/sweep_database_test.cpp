@@ -142,6 +142,7 @@ TEST_F(SweepDatabase, RecognisesFilesByTheirContent) {
   write_plate();
   experiment("# a comment\n" + std::string(forty));
   EXPECT_THAT(sweep().out, HasSubstr("0 run now, 41 kept"));
+  EXPECT_THAT(sweep("--seed 9").out, HasSubstr("41 run now, 0 kept"));
   // Twice the edge: another buffer of the model that the experiment names.
   write_plate(2.0 * edge_m);
   EXPECT_THAT(sweep().out, HasSubstr("41 run now, 0 kept"));

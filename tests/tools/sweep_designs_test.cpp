@@ -28,6 +28,28 @@ class SweepDesigns : public SweepTest {
   }
 };
 
+TEST_F(SweepDesigns, TakeEveryCombinationOfAGrid) {
+  experiment(R"([sweep]
+verb = "trace"
+figures = ["power_on_plate_W"]
+axis = [{ key = "attitude.tilt_deg", values = [0, 60] },
+        { key = "source[0].irradiance_W_m2", from = 10, to = 1000, count = 3, spacing = "logarithmic" }]
+)");
+  ASSERT_EQ(sweep().status, 0);
+  const auto table = csv_rows(at("out/sweep.csv"));
+  ASSERT_EQ(table.size(), 7u);
+  EXPECT_EQ(table[0][1], "attitude.tilt_deg");
+  for (size_t i = 0; i < 6; ++i) {
+    const double tilt_deg = i < 3 ? 0.0 : 60.0;
+    const double irradiance_W_m2 = std::pow(10.0, 1.0 + static_cast<double>(i % 3));
+    EXPECT_EQ(std::stod(table[i + 1][1]), tilt_deg);
+    EXPECT_NEAR(std::stod(table[i + 1][2]), irradiance_W_m2, 1e-12 * irradiance_W_m2);
+    const double exact_W = power_W(tilt_deg) * irradiance_W_m2 / sun_W_m2;
+    EXPECT_NEAR(csv_column(at("out/sweep.csv"), "power_on_plate_W").at(i), exact_W,
+                near_fraction * power_W(0) * irradiance_W_m2 / sun_W_m2);
+  }
+}
+
 TEST_F(SweepDesigns, AverageOverAnIntervalIsItsIntegral) {
   experiment(R"([sweep]
 verb = "trace"
@@ -212,11 +234,26 @@ TEST_F(SweepDesigns, ThatAllFailLeaveNothing) {
 
 TEST_F(SweepDesigns, PlansThatMakeNoSenseAreOneLine) {
   const std::string begin = "[sweep]\nverb = \"trace\"\n",
-                    axis = "[[sweep.axis]]\nkey = \"attitude.tilt_deg\"\nvalues = [1]\n";
-  const auto refuses = [&](const std::string& table, const std::string& words) {
+                    key = "[[sweep.axis]]\nkey = \"attitude.tilt_deg\"\n",
+                    axis = key + "values = [1]\n";
+  const auto refuses = [&](const std::string& table, const std::string& words,
+                           const std::string& options = "") {
     experiment(table);
-    EXPECT_THAT(refused("sweep " + at("e.toml") + " --out " + at("out")), HasSubstr(words));
+    EXPECT_THAT(refusal_in(sweep(options)), HasSubstr(words));
+    EXPECT_FALSE(std::filesystem::exists(at("out"))) << table;
   };
+  refuses("", "sweep");
+  refuses(begin, "axis");
+  refuses("[sweep]\nverb = \"tracee\"\n" + axis, "tracee");
+  refuses(begin + "figurs = [\"a\"]\n" + axis, "figures");
+  refuses(begin + key + "values = []\n", "values");
+  refuses(begin + key + "values = [1, [2, nan]]\n", "finite");
+  refuses(begin + key + "from = 0\nto = 2\ncount = 3\nspacing = \"logarithmic\"\n", "above zero");
+  refuses(begin + key + "from = 0\nto = 2\ncount = 1\n", "count");
+  refuses(begin + "[[sweep.axis]]\nkey = \"source[0].power_w\"\nvalues = [1]\n", "power_w");
+  refuses(begin + "designs = 4\n" + key + "values = [1, 2]\n",
+          "found a list, in a plan with random designs");
+  refuses(begin + axis, "K/N", "--shard 3/2");
   refuses(begin + axis + "[[sweep.axis]]\nkey = \"attitude.tilt_rad\"\nvalues = [0.1]\n",
           "every quantity once");
   refuses(begin + axis + "[[sweep.worst_over]]\nkey = \"trace.seed\"\nvalues = [1, 2]\n",

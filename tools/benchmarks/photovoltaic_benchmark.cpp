@@ -2,10 +2,8 @@
 //
 //   photovoltaic_benchmark --benchmark_min_time=1 --benchmark_repetitions=5
 //
-// The relevant time is `user_s_per_item`, the user CPU time, which depends least on other programs
-// on the machine.
+// The relevant time is the CPU time, which depends least on other programs on the machine.
 #include <benchmark/benchmark.h>
-#include <sys/resource.h>
 
 #include <cmath>
 #include <memory>
@@ -18,20 +16,6 @@
 
 namespace photorque {
 namespace {
-
-double user_s() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec) +
-         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
-}
-
-void report(benchmark::State& state, double start_user_s, double items_per_round) {
-  const double items = items_per_round * static_cast<double>(state.iterations());
-  const double spent_s = user_s() - start_user_s;
-  state.counters["user_us_per_item"] = 1e6 * spent_s / items;
-  state.counters["items_per_user_s"] = items / spent_s;
-}
 
 CellParameters cell() {
   for (const NamedCell& known : known_cells()) {
@@ -77,7 +61,6 @@ void hundred_cells(benchmark::State& state, const std::string& map, int strings,
   const ArrayWiring wiring = regular_wiring(10, 10, options);
   const CellTables tables(100, std::make_shared<const DiodeVoltageTable>(CellCurve(cell()), 20.0));
   const std::vector<double> light = light_A(map);
-  const double start = user_s();
   size_t maxima = 0;
   for (auto _ : state) {
     const ArrayCurve curve(wiring, tables, light);
@@ -85,29 +68,24 @@ void hundred_cells(benchmark::State& state, const std::string& map, int strings,
     maxima = scan.maxima.size();
     benchmark::DoNotOptimize(scan.points.data());
   }
-  report(state, start, 1.0);
   state.counters["maxima"] = static_cast<double>(maxima);
 }
 
 void single_cell_alone(benchmark::State& state) {
   const CellCurve curve(cell());
-  const double start = user_s();
   double light = 5.0;
   for (auto _ : state) {
     light = light > 8.0 ? 1.0 : light + 0.01;
     benchmark::DoNotOptimize(curve.maximum_power(light));
   }
-  report(state, start, 1.0);
 }
 
 void cell_table(benchmark::State& state) {
   const CellCurve curve(cell());
-  const double start = user_s();
   for (auto _ : state) {
     const DiodeVoltageTable table(curve, 20.0);
     benchmark::DoNotOptimize(table.pieces());
   }
-  report(state, start, 1.0);
 }
 
 BENCHMARK(single_cell_alone);

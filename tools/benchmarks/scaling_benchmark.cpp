@@ -1,10 +1,9 @@
-// Computing time over the number of triangles and of emitters, with fitted exponents.
+// Computing time over the number of triangles and of emitters.
 //
 //   scaling_benchmark [largest number of triangles, 1e7]
 //
 // Measures user CPU time of the whole process, which depends little on other programs on the
-// machine, with two threads. The exponent is the slope of a straight line through log time over log
-// number.
+// machine, with two threads.
 #include <sys/resource.h>
 
 #include <cmath>
@@ -71,40 +70,24 @@ Scene shaded_plate() {
   return scene;
 }
 
-// Slope of the straight line through the logarithms.
-double exponent(const std::vector<double>& numbers, const std::vector<double>& times) {
-  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
-  for (size_t i = 0; i < numbers.size(); ++i) {
-    const double a = std::log(numbers[i]), b = std::log(times[i]);
-    n += 1.0;
-    x += a;
-    y += b;
-    xx += a * a;
-    xy += a * b;
-  }
-  return (n * xy - x * y) / (n * xx - x * x);
-}
-
 void over_triangles(double largest) {
   constexpr uint64_t rays = 1 << 21;
   const std::vector<Beam> beams = lamps(4);
-  std::vector<double> triangles, build_s, trace_s;
   std::printf("triangles,build_s,trace_s,segments_per_ray\n");
   for (double wanted = 1e3; wanted <= 1.01 * largest; wanted *= 10.0) {
     Scene scene = corrugated(static_cast<int>(std::lround(std::sqrt(0.5 * wanted))));
-    triangles.push_back(static_cast<double>(scene.meshes[0].triangles.size()));
+    const size_t triangles = scene.meshes[0].triangles.size();
     std::optional<TraceableScene> traceable;
-    build_s.push_back(cpu_s_of([&] { traceable.emplace(std::move(scene)); }));
+    const double build_s = cpu_s_of([&] { traceable.emplace(std::move(scene)); });
     TraceOptions options;
     options.rays = rays;
     options.threads = threads;
     TraceResult result;
-    trace_s.push_back(cpu_s_of([&] { result = trace(*traceable, {}, beams, {}, options); }));
-    std::printf("%.0f,%.4g,%.4g,%.3f\n", triangles.back(), build_s.back(), trace_s.back(),
+    const double trace_s = cpu_s_of([&] { result = trace(*traceable, {}, beams, {}, options); });
+    std::printf("%zu,%.4g,%.4g,%.3f\n", triangles, build_s, trace_s,
                 static_cast<double>(result.segments) / static_cast<double>(result.rays));
     std::fflush(stdout);
   }
-  std::printf("exponent,%.3f,%.3f\n\n", exponent(triangles, build_s), exponent(triangles, trace_s));
 }
 
 void over_emitters() {
@@ -113,30 +96,26 @@ void over_emitters() {
                             make_surface_grid(scene, scene.instances_of("receiver"), {}));
   const TraceableScene traceable(std::move(scene));
   const Receiver* const receivers[] = {&map};
-  std::vector<double> emitters, same_rays_s, rays_each_s, gather_s;
   std::printf("emitters,forward_16M_rays_s,forward_4096_rays_each_s,gather_s\n");
   for (const int count : {1, 10, 100, 1000, 10000}) {
     const std::vector<Beam> beams = lamps(count);
-    emitters.push_back(count);
     TraceOptions options;
     options.threads = threads;
     options.rays = 1 << 24;
     uint64_t rays = 0;
     const double all_s =
         cpu_s_of([&] { rays = trace(traceable, {}, beams, receivers, options).rays; });
-    same_rays_s.push_back(all_s * static_cast<double>(options.rays) / static_cast<double>(rays));
+    const double same_rays_s =
+        all_s * static_cast<double>(options.rays) / static_cast<double>(rays);
     options.rays = 4096 * static_cast<uint64_t>(count);
-    rays_each_s.push_back(cpu_s_of([&] { trace(traceable, {}, beams, receivers, options); }));
+    const double rays_each_s = cpu_s_of([&] { trace(traceable, {}, beams, receivers, options); });
     GatherOptions gathering;
     gathering.threads = threads;
     gathering.points = 1;
-    gather_s.push_back(cpu_s_of([&] { gather_direct(traceable, {}, beams, map, gathering); }));
-    std::printf("%d,%.4g,%.4g,%.4g\n", count, same_rays_s.back(), rays_each_s.back(),
-                gather_s.back());
+    const double gather_s = cpu_s_of([&] { gather_direct(traceable, {}, beams, map, gathering); });
+    std::printf("%d,%.4g,%.4g,%.4g\n", count, same_rays_s, rays_each_s, gather_s);
     std::fflush(stdout);
   }
-  std::printf("exponent,%.3f,%.3f,%.3f\n", exponent(emitters, same_rays_s),
-              exponent(emitters, rays_each_s), exponent(emitters, gather_s));
 }
 
 }  // namespace

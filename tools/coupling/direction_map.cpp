@@ -10,6 +10,7 @@
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/text/format.h"
+#include "receivers/gather/bodies/body_in_flow.h"
 #include "receivers/wrench/spad.h"
 #include "receivers/wrench/table_product.h"
 #include "tools/coupling/table_cache.h"
@@ -117,10 +118,11 @@ void print_summary(const Console& console, const WrenchTable& table, const Dista
 }
 
 // Prints by how much the torque that a propagation interpolates in the table differs from the
-// torque of `light` in directions between the nodes. Only for wrenches without noise.
+// torque of `light` in directions between the nodes. Only for wrenches without noise. `radius_m`:
+// that of the scene.
 void print_interpolation_error(const Console& console, const LightDirections& light,
-                               const WrenchTable& table, const DistantSource& source, int threads,
-                               Warnings& warnings) {
+                               const WrenchTable& table, const DistantSource& source,
+                               double radius_m, int threads, Warnings& warnings) {
   constexpr size_t fresh = 64;
   constexpr double much = 0.05;
   const TorqueSurface surface(table);
@@ -138,7 +140,12 @@ void print_interpolation_error(const Console& console, const LightDirections& li
   });
   double squares = 0.0;
   for (const double one : differences_N_m) squares += one * one / fresh;
-  const double largest_N_m = std::max(largest_torque_N_m(table), 1e-300);
+  // A torque that is zero by symmetry counts as the largest force at a small lever arm.
+  constexpr double small_arm = 1e-3;
+  double largest_N_m = std::max(largest_torque_N_m(table), 1e-300);
+  for (const Vec3& force_N : table.force_body_N) {
+    largest_N_m = std::max(largest_N_m, small_arm * radius_m * force_N.norm());
+  }
   const double rms = std::sqrt(squares) / largest_N_m;
   const std::string found =
       readable_number(rms, 2) + " of the largest torque (rms in " + std::to_string(fresh) +
@@ -244,6 +251,39 @@ void show_nodes(const OpticalRun& run, const std::vector<Direction>& all, size_t
   }
 }
 
+// Force and torque of a gas flow, at the pressure of `source`.
+class FlowDirections final : public LightDirections {
+ public:
+  FlowDirections(const OpticalRun& run, const DistantSource& source, const Vec3& about_body_m)
+      : source_(source),
+        body_(run.scene(), run.experiment().flow->speed_ratio, run.experiment().flow->walls,
+              about_body_m) {}
+
+  DirectionWrench at(const RigidTransform& lab_from_body) const override {
+    const BodyInFlow::Result result =
+        body_.wrench(lab_from_body.inverse().direction(-source_.towards_lab));
+    DirectionWrench found;
+    for (size_t k = 0; k < found.direct.size(); ++k) {
+      found.direct[k] = source_.pressure_Pa * result.per_pressure[static_cast<Eigen::Index>(k)];
+    }
+    found.rays = result.rays;
+    return found;
+  }
+
+  void fill(WrenchTable& table, const std::vector<DirectionWrench>& found, bool, const Console&,
+            int, std::vector<std::string>&) const override {
+    for (size_t node = 0; node < table.nodes(); ++node) {
+      const WrenchComponents& one = found[node].direct;
+      table.force_body_N[node] = {one[0], one[1], one[2]};
+      table.torque_body_N_m[node] = {one[3], one[4], one[5]};
+    }
+  }
+
+ private:
+  DistantSource source_;
+  BodyInFlow body_;
+};
+
 }  // namespace
 
 RigidTransform DistantSource::lab_from_body(const Vec3& towards_body) const {
@@ -285,7 +325,7 @@ DirectionMap map_over_directions(const Console& console, const OpticalRun& run, 
   }
   const bool is_gas = run.experiment().flow.has_value();
   std::unique_ptr<LightDirections> light =
-      is_gas ? flow_directions(run, source, table.about_body_m)
+      is_gas ? std::make_unique<FlowDirections>(run, source, table.about_body_m)
              : sunlit_directions(run, source, table.about_body_m, threads);
   const bool is_noisy = light == nullptr;
   if (is_noisy) light = traced_directions(run, source, table.about_body_m);
@@ -310,7 +350,8 @@ DirectionMap map_over_directions(const Console& console, const OpticalRun& run, 
   const double wall_s = wall.elapsed_s();
   print_summary(console, table, source, is_gas ? "Drag" : "Light pressure");
   if (whole && !is_noisy) {
-    print_interpolation_error(console, *light, table, source, threads, warnings);
+    print_interpolation_error(console, *light, table, source, run.experiment().scene.radius_m(),
+                              threads, warnings);
   }
 
   warnings.print(console);

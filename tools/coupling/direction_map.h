@@ -74,10 +74,6 @@ std::unique_ptr<LightDirections> traced_directions(const OpticalRun& run, const 
 std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const DistantSource& sun,
                                                    const Vec3& about_body_m, int threads);
 
-// Tables of a gas flow (receivers/gather/bodies/body_in_flow.h), at the pressure of `source`.
-std::unique_ptr<LightDirections> flow_directions(const OpticalRun& run, const DistantSource& source,
-                                                 const Vec3& about_body_m);
-
 // Attitudes for evenly distributed directions outside the table, for comparisons with rays.
 std::vector<RigidTransform> fresh_directions(size_t count, const DistantSource& sun);
 

@@ -211,8 +211,7 @@ void LightModel::add(const Light& light, const Quat& lab_from_body, RotationSamp
   };
   const OpticalRun& run = *light.run;
   const OpticalResult result = run.run({lab_from_body, Vec3::Zero()}, {}, settings_.rays);
-  const WrenchEstimate wrench =
-      wrench_about(run.wrench().total(result.sums[run.wrench_index()]), Vec3::Zero());
+  const WrenchEstimate wrench = run.wrench_of(result);
   const Vec3 torque_error = wrench.torque_error_N_m(), force_error = wrench.force_error_N();
   for (int k = 0; k < 3; ++k) put(wrench.mean.torque_N_m[k], torque_error[k]);
   for (int k = 0; k < 3; ++k) put(wrench.mean.force_N[k], force_error[k]);

@@ -76,10 +76,7 @@ std::vector<RunFile> trajectory_files(const std::shared_ptr<const PropagationRun
     write_recording(path, coupled->motion.recording, {stamp});
   };
   const auto attitude = [run, coupled, stamp, name](const std::filesystem::path& path) {
-    // The file date is that of the trajectory, so that equal runs give equal files.
-    AttitudeEphemeris ephemeris = make_aem(coupled->motion.states, run->epoch, name, run->epoch);
-    ephemeris.comments = {stamp};
-    write_aem(path, ephemeris);
+    write_aem(path, coupled->motion.states, run->epoch, name, stamp);
   };
   return {{"recording.csv", recording}, {"attitude.aem", attitude}};
 }

@@ -78,7 +78,6 @@ class Instance {
   fmi3Status write_state(const void* state, void* bytes, size_t size) const;
   fmi3Status read_state(const void* bytes, size_t size, void** to) const;
 
-  const UnitDescription& description() const { return description_; }
   double now_s() const { return now_s_; }
   // Whether the platform has reached its stop in the last step, at now_s().
   bool has_ended() const { return has_ended_; }

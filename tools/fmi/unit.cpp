@@ -57,10 +57,7 @@ std::vector<UnitVariable> unit_variables(const Sensors& sensors) {
     all.push_back({first_flag_reference + 1, "gyro_is_new", Kind::flag, "",
                    "the gyro has read at this tick; else its last reading is held"});
   }
-  if (sensors.encoder) {
-    add(place_yaw, "yaw_rad", "rad", "azimuth of body x by the encoder");
-    all.back().old_name = "heading_rad";
-  }
+  if (sensors.encoder) add(place_yaw, "yaw_rad", "rad", "azimuth of body x by the encoder");
   add(place_current, "battery_current_A", "A", "drawn from the battery until this tick");
   add(place_power, "array_power_W", "W", "of the solar array until this tick");
   for (uint32_t i = 0; i < 4; ++i) {

@@ -22,7 +22,6 @@ struct UnitVariable {
   Kind kind = Kind::output;
   std::string unit;  // as in modelDescription.xml; empty: a pure number
   std::string meaning;
-  std::string old_name = {};  // earlier name that is still accepted
 };
 
 // Value references; outputs follow in the order of UnitOutputs::values.

@@ -21,8 +21,8 @@
 #include "tools/keys/fit.h"
 #include "tools/realtime/session.h"
 #include "tools/runs/array_report.h"
-#include "tools/supply/options.h"
-#include "tools/sweeps/keys.h"
+#include "tools/supply/trade.h"
+#include "tools/sweeps/plan.h"
 
 namespace photorque {
 namespace {

@@ -62,8 +62,6 @@ std::vector<double> distinct_places(std::vector<double> values) {
   return all;
 }
 
-// Steps of the positions of a scan. If they do not lie on a grid, the number of steps follows from
-// the number of readings.
 Steps steps_of(const std::vector<double>& values, size_t readings) {
   const std::vector<double> all = distinct_places(values);
   if (all.size() == 1) return {all.front(), 0.01, 1};
@@ -181,7 +179,6 @@ Plot channel_plot(const ChannelSeries& channel, const RecordingSeries& recording
   return plot;
 }
 
-// Text such as "tilt 12 deg, heading 60 deg".
 std::string attitude_words(const Quat& lab_from_body) {
   const Vec3 up = lab_from_body * Vec3::UnitZ();
   const auto whole = [](double angle_rad) {

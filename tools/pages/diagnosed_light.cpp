@@ -74,12 +74,14 @@ void show_scans(const std::vector<ScanGroup>& groups, const OpticalRun& run, boo
   const SurfaceGrid& grid = run.flux_map(index).grid();
   if (grid.over != SurfaceGrid::Over::plane) return;
   SceneStage stage = stage_of(run, StageMaps::own);
+  const PaintedSurface surface =
+      *std::ranges::find(stage.paintings.front().surfaces, run.experiment().receivers[index].name,
+                         &PaintedSurface::name);
   stage.paintings.clear();
   stage.arrows.clear();
   const PaintedBins bins = painted_bins(groups, grid);
   for (const ScanView& shown : views_of_scans(found)) {
-    Painting painting{shown.title, "W/m²", shown.is_difference, {}};
-    painting.surfaces.push_back(painted_receiver(run, run.experiment().receivers[index].name));
+    Painting painting{shown.title, "W/m²", shown.is_difference, {surface}};
     for (const ScanGroup& group : groups) {
       painting.surfaces.front().map_of_light.push_back(
           on_receiver(scan_map(group, shown, 1), grid, bins));
@@ -122,9 +124,7 @@ void show_runs(const std::vector<RecordingSeries>& runs, const OpticalRun& optic
     stage.figures.push_back({"nominal model", channel.unit});
     if (found) stage.figures.push_back({"improved model", channel.unit});
   }
-  const size_t count = std::min(most_states, time_s.size());
-  for (size_t k = 0; k < count; ++k) {
-    const size_t i = count == 1 ? 0 : k * (time_s.size() - 1) / (count - 1);
+  for (const size_t i : even_indices(time_s.size(), most_states)) {
     if (!axis.values.empty() && !(time_s[i] > axis.values.back())) continue;
     axis.values.push_back(time_s[i]);
     attitudes.push_back(first.attitude.measured[i]);

@@ -25,22 +25,6 @@ std::string rate_channel(int axis) {
   return std::string("gyro_") + "xyz"[axis] + "_rad_s";
 }
 
-// Start and end of a recording.
-struct Span {
-  double from_s = 0.0, to_s = 0.0;
-};
-
-Span span_of(const RecordingSeries& recording) {
-  Span span{1e300, -1e300};
-  const auto extend = [&](const std::vector<double>& time_s) {
-    if (time_s.empty()) return;
-    span = {std::min(span.from_s, time_s.front()), std::max(span.to_s, time_s.back())};
-  };
-  extend(recording.attitude.time_s);
-  for (const ChannelSeries& channel : recording.channels) extend(channel.time_s);
-  return span;
-}
-
 // Instants of the attitude; without attitude, those of the first channel with readings.
 const std::vector<double>& own_instants(const RecordingSeries& recording) {
   if (!recording.attitude.time_s.empty()) return recording.attitude.time_s;
@@ -51,29 +35,28 @@ const std::vector<double>& own_instants(const RecordingSeries& recording) {
 // Instants of the slider: those of a single recording, or equally spaced over the longest of
 // several recordings, each from its start.
 std::vector<double> instants(const std::vector<RecordingSeries>& recordings,
-                             const std::vector<Span>& spans) {
+                             const std::vector<Where::Interval>& spans) {
   const size_t most = std::clamp<size_t>(most_diagnosed_states / recordings.size(), 100, 1500);
   std::vector<double> at;
   if (recordings.size() == 1) {
     const std::vector<double>& own = own_instants(recordings.front());
-    const size_t count = std::min(most, own.size());
-    for (size_t i = 0; i < count; ++i) {
-      const double time_s = own[count == 1 ? 0 : i * (own.size() - 1) / (count - 1)];
-      if (at.empty() || time_s > at.back()) at.push_back(time_s);
+    for (const size_t i : even_indices(own.size(), most)) {
+      if (at.empty() || own[i] > at.back()) at.push_back(own[i]);
     }
     return at;
   }
   double longest_s = 0.0;
-  for (const Span& span : spans) longest_s = std::max(longest_s, span.to_s - span.from_s);
+  for (const auto& [from, to] : spans) longest_s = std::max(longest_s, to - from);
   for (size_t i = 0; i < most; ++i) {
     at.push_back(longest_s * static_cast<double>(i) / static_cast<double>(most - 1));
   }
   return at;
 }
 
-// Almost the largest of some lengths: the 99th percentile, without outliers.
+// Almost the largest magnitude of some numbers: the 99th percentile, without outliers.
 double nearly_largest(std::vector<double> lengths) {
   std::erase_if(lengths, [](double length) { return !std::isfinite(length); });
+  for (double& length : lengths) length = std::abs(length);
   if (lengths.empty()) return 0.0;
   const auto at =
       lengths.begin() + static_cast<ptrdiff_t>(0.99 * static_cast<double>(lengths.size() - 1));
@@ -101,21 +84,6 @@ double enlargement(double largest_rad, double noise_rad) {
     if (next <= most) factor = next;
   }
   return factor;
-}
-
-// Rotation between measurement and a model, in body axes, with its error.
-struct Difference {
-  Vec3 body = Vec3::Zero(), error_body = Vec3::Zero();
-};
-
-Difference difference_of(const Quat& lab_from_body, const Vec3& off_lab, const Vec3& error_lab,
-                         double unit) {
-  const Mat3 body_from_lab = lab_from_body.conjugate().toRotationMatrix();
-  Difference d;
-  if (!off_lab.allFinite()) return d;
-  d.body = body_from_lab * off_lab / unit;
-  d.error_body = (body_from_lab.cwiseAbs2() * error_lab.cwiseAbs2()).cwiseSqrt() / unit;
-  return d;
 }
 
 void add_attitude_figures(const RecordingSeries& recording, const Quat& q, double time_s,
@@ -175,7 +143,7 @@ class MotionStage {
     });
   }
 
-  const std::vector<Span>& spans() const { return spans_; }
+  const std::vector<Where::Interval>& spans() const { return spans_; }
 
   void fill() {
     stage_.paintings.clear();
@@ -187,7 +155,7 @@ class MotionStage {
     const bool several = recordings_.size() > 1;
     for (size_t r = 0; r < recordings_.size(); ++r) {
       for (const double time_s : at) {
-        const double own_s = several ? std::min(spans_[r].from_s + time_s, spans_[r].to_s) : time_s;
+        const double own_s = several ? std::min(spans_[r].from + time_s, spans_[r].to) : time_s;
         stage_.states.push_back(has_attitude_ ? attitude_state(recordings_[r], own_s)
                                               : rate_state(recordings_[r], own_s));
       }
@@ -205,8 +173,8 @@ class MotionStage {
     factor_ = enlargement(largest_rad, noise_rad);
     in_degrees_ = largest_rad > 2.0 * degree_rad;
     const std::string times = factor_ > 1.0 ? ", difference × " + factor_text() : "";
-    stage_.bodies = {{"measured"}, {"nominal" + times}};
-    if (found_) stage_.bodies.push_back({"found" + times});
+    stage_.bodies = {"measured", "nominal" + times};
+    if (found_) stage_.bodies.push_back("found" + times);
     add_difference_arrows(in_degrees_ ? "deg" : "arcsec", largest_rad / unit_rad());
     stage_.figures = {{"tilt, measured", "deg"}, {"heading, measured", "deg"}};
     for (const char axis : {'x', 'y', 'z'}) {
@@ -229,21 +197,16 @@ class MotionStage {
       for (int k = 0; k < 3; ++k) {
         const ChannelSeries* channel = series_channel(recording, rate_channel(k));
         if (channel == nullptr) continue;
-        largest = std::max(largest, nearly_largest(absolute(channel->residual_before)));
-        if (found_) largest = std::max(largest, nearly_largest(absolute(channel->residual_after)));
+        largest = std::max(largest, nearly_largest(channel->residual_before));
+        if (found_) largest = std::max(largest, nearly_largest(channel->residual_after));
       }
     }
-    stage_.bodies = {{"platform"}};
+    stage_.bodies = {"platform"};
     add_difference_arrows("rad/s", largest);
     stage_.arrows.push_back({"measured rate", "rad/s", StageArrow::Kind::turn});
     add_sentence(stage_.remark,
                  "The recordings show no attitude: the body is drawn in its own "
                  "axes, with its rate as an arrow.");
-  }
-
-  static std::vector<double> absolute(std::vector<double> values) {
-    for (double& value : values) value = std::abs(value);
-    return values;
   }
 
   void add_difference_arrows(const std::string& unit, double largest) {
@@ -262,15 +225,20 @@ class MotionStage {
     const AttitudeSeries& a = recording.attitude;
     const size_t i = nearest_instant(a.time_s, time_s);
     const Quat& q = a.measured[i];
+    const Mat3 body_from_lab = q.conjugate().toRotationMatrix();
     StageState state;
     state.lab_from_body.push_back(q);
     const auto add = [&](const std::vector<Vec3>& off) {
       const auto [off_rad, error_rad] = mean_about(a, off, i);
       const Vec3 shown_rad = off_rad.allFinite() ? Vec3(factor_ * off_rad) : Vec3::Zero();
       state.lab_from_body.push_back((turn_by(-shown_rad) * q).normalized());
-      const Difference d = difference_of(q, off_rad, error_rad, unit_rad());
-      state.arrow_body.push_back(d.body);
-      state.arrow_error_body.push_back(d.error_body);
+      const bool is_known = off_rad.allFinite();
+      state.arrow_body.push_back(is_known ? Vec3(body_from_lab * off_rad / unit_rad())
+                                          : Vec3::Zero());
+      state.arrow_error_body.push_back(
+          is_known
+              ? Vec3((body_from_lab.cwiseAbs2() * error_rad.cwiseAbs2()).cwiseSqrt() / unit_rad())
+              : Vec3::Zero());
     };
     add(a.off_before_rad);
     if (found_) add(a.off_after_rad);
@@ -302,12 +270,32 @@ class MotionStage {
   const std::vector<RecordingSeries>& recordings_;
   bool found_;
   SceneStage& stage_;
-  std::vector<Span> spans_;
+  std::vector<Where::Interval> spans_;
   bool has_attitude_ = false, in_degrees_ = false;
   double factor_ = 1.0;
 };
 
 }  // namespace
+
+std::vector<size_t> even_indices(size_t count, size_t most) {
+  const size_t shown = std::min(count, most);
+  std::vector<size_t> indices;
+  for (size_t i = 0; i < shown; ++i) {
+    indices.push_back(shown == 1 ? 0 : i * (count - 1) / (shown - 1));
+  }
+  return indices;
+}
+
+Where::Interval span_of(const RecordingSeries& recording) {
+  Where::Interval span{1e300, -1e300};
+  const auto extend = [&](const std::vector<double>& time_s) {
+    if (time_s.empty()) return;
+    span = {std::min(span.from, time_s.front()), std::max(span.to, time_s.back())};
+  };
+  extend(recording.attitude.time_s);
+  for (const ChannelSeries& channel : recording.channels) extend(channel.time_s);
+  return span;
+}
 
 size_t nearest_instant(const std::vector<double>& time_s, double at_s) {
   const auto after = std::ranges::lower_bound(time_s, at_s);
@@ -352,8 +340,8 @@ void show_motion(const std::vector<RecordingSeries>& recordings, bool something_
                  SceneStage stage, RunPage& page) {
   std::vector<RecordingSeries> drawn;
   for (const RecordingSeries& recording : recordings) {
-    const Span span = span_of(recording);
-    if (span.from_s < span.to_s) drawn.push_back(recording);
+    const Where::Interval span = span_of(recording);
+    if (span.from < span.to) drawn.push_back(recording);
   }
   if (drawn.empty()) return;
   MotionStage motion(drawn, something_was_found, stage);
@@ -364,7 +352,7 @@ void show_motion(const std::vector<RecordingSeries>& recordings, bool something_
     return;
   }
   for (size_t r = 0; r < drawn.size(); ++r) {
-    PlotCursor cursor{"", 0, 1.0, motion.spans()[r].from_s};
+    PlotCursor cursor{"", 0, 1.0, motion.spans()[r].from};
     cursor.only_at = {1, static_cast<double>(r + 1)};
     add_curves(drawn[r], "_of_recording_" + std::to_string(r + 1), cursor, page);
   }

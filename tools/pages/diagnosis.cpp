@@ -1,4 +1,3 @@
-
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -14,26 +13,20 @@ namespace {
 
 constexpr size_t most_recordings = 8;
 
-std::string bare_name(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
-}
-
 template <class Value>
 void append_values(std::vector<Value>& to, const std::vector<Value>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-void append_channel(ChannelSeries& to, const ChannelSeries& from) {
-  using Series = ChannelSeries;
-  for (const auto of : {&Series::time_s, &Series::measured, &Series::before, &Series::after,
-                        &Series::residual_before, &Series::residual_after}) {
-    append_values(to.*of, from.*of);
-  }
-}
-
 // Appends the held-out end of a recording to its beginning.
 void append_recording(RecordingSeries& to, const RecordingSeries& from) {
-  for (size_t c = 0; c < to.channels.size(); ++c) append_channel(to.channels[c], from.channels[c]);
+  using Channel = ChannelSeries;
+  for (size_t c = 0; c < to.channels.size(); ++c) {
+    for (const auto of : {&Channel::time_s, &Channel::measured, &Channel::before, &Channel::after,
+                          &Channel::residual_before, &Channel::residual_after}) {
+      append_values(to.channels[c].*of, from.channels[c].*of);
+    }
+  }
   append_values(to.attitude.time_s, from.attitude.time_s);
   append_values(to.attitude.measured, from.attitude.measured);
   append_values(to.attitude.off_before_rad, from.attitude.off_before_rad);
@@ -50,27 +43,12 @@ void append_recording(RecordingSeries& to, const RecordingSeries& from) {
   append_values(to.light->lab_from_body, from.light->lab_from_body);
 }
 
-double first_time_s(const RecordingSeries& recording) {
-  for (const ChannelSeries& c : recording.channels) {
-    if (!c.time_s.empty()) return c.time_s.front();
-  }
-  return 0.0;
-}
-
-double last_time_s(const RecordingSeries& recording) {
-  double last = -1e300;
-  for (const ChannelSeries& c : recording.channels) {
-    if (!c.time_s.empty()) last = std::max(last, c.time_s.back());
-  }
-  return last;
-}
-
 // Whether `held` is the held-out part of `recording`.
 bool is_rest_of(const RecordingSeries& held, const RecordingSeries& recording) {
   return held.is_held_out && !recording.is_held_out && held.recording == recording.recording &&
          held.channels.size() == recording.channels.size() && recording.held_out_s.empty() &&
          held.light.has_value() == recording.light.has_value() &&
-         (held.light || first_time_s(held) > last_time_s(recording));
+         (held.light || span_of(held).from > span_of(recording).to);
 }
 
 // The optical run of an experiment with a scene and lamps; null otherwise.
@@ -83,10 +61,6 @@ std::unique_ptr<OpticalRun> optics_of(const RunOptions& options) {
 
 bool found_something(const Diagnosis& d) {
   return !d.effects.empty() || !d.empirical.empty() || !d.unnamed.empty();
-}
-
-bool is_of_module(const RunOptions& options) {
-  return Settings(parse_toml(options.experiment_text(), options.experiment.string())).has("module");
 }
 
 }  // namespace
@@ -105,7 +79,7 @@ std::vector<RecordingSeries> shown_recordings(const Diagnosis& d, size_t most) {
   if (shown.size() > most) shown.resize(most);
   std::set<std::string> names;
   for (RecordingSeries& series : shown) {
-    const std::string name = bare_name(series.recording);
+    const std::string name = std::filesystem::path(series.recording).filename().string();
     series.recording = name;
     for (int k = 2; !names.insert(series.recording).second; ++k) {
       series.recording = name + " (" + std::to_string(k) + ")";
@@ -154,7 +128,9 @@ std::string interactive_report_html(const Diagnosis& d, const Provenance& proven
                          " recordings or segments; a report without --page has all.");
   }
   const bool found = found_something(d);
-  const std::unique_ptr<OpticalRun> optics = is_of_module(options) ? nullptr : optics_of(options);
+  const bool is_of_module =
+      Settings(parse_toml(options.experiment_text(), options.experiment.string())).has("module");
+  const std::unique_ptr<OpticalRun> optics = is_of_module ? nullptr : optics_of(options);
   if (of_light) {
     show_light(recordings, found, optics.get(), page);
   } else if (!recordings.empty()) {

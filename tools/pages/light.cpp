@@ -88,26 +88,6 @@ std::vector<PowerStage> stages_of_light(const OpticalRun& run, const OpticalResu
   return stages;
 }
 
-// Page of one traced attitude.
-RunPage lit_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
-                 const PageHead& head, const std::vector<std::string>& headlines) {
-  RunPage page = page_of(result, head, headlines);
-  const Experiment& experiment = run.experiment();
-  page.headline = "Tilt " + show(stated_deg(experiment.file.attitude.tilt_rad)) + " deg, heading " +
-                  show(stated_deg(experiment.file.attitude.heading_rad)) + " deg. " +
-                  std::to_string(experiment.beams.size()) +
-                  (experiment.beams.size() == 1 ? " lamp, " : " lamps, ") +
-                  std::to_string(experiment.scene.instances.size()) + " parts.";
-  page.power = power_stages(run, light, result.product);
-  // The waterfall of page.power replaces this plot.
-  std::erase_if(page.product.plots, [](const Plot& plot) { return plot.name == "loss_waterfall"; });
-  page.notes = experiment.notices;
-  page.stage = stage_of(run, StageMaps::of_product);
-  page.stage->states.push_back(lit_state(run, experiment.lab_from_body, light));
-  add_light(*page.stage, run, experiment.lab_from_body, light, 1);
-  return page;
-}
-
 void add_node(SceneStage& stage, const TracedNode& node) {
   const Experiment& experiment = node.run.experiment();
   const bool is_first = stage.states.empty();
@@ -157,12 +137,6 @@ RunPage page_of(const RunResult& result, const PageHead& head,
   return page;
 }
 
-std::vector<PowerStage> power_stages(const OpticalRun& run, const OpticalResult& light,
-                                     const Product& product) {
-  const Table* losses = find_table(product, "losses");
-  return losses != nullptr ? stages_of_array(*losses) : stages_of_light(run, light);
-}
-
 RunFile page_file(RunPage page) {
   const auto shared = std::make_shared<const RunPage>(std::move(page));
   return {
@@ -181,23 +155,36 @@ RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunR
                                              "light_to_electric_efficiency",
                                              "cell_temperature_K",
                                              "array_power_slope_W_K"};
-  return page_file(lit_page(run, light, result, head, head.verb == "power" ? of_power : of_trace));
+  RunPage page = page_of(result, head, head.verb == "power" ? of_power : of_trace);
+  const Experiment& experiment = run.experiment();
+  page.headline = "Tilt " + show(stated_deg(experiment.file.attitude.tilt_rad)) + " deg, heading " +
+                  show(stated_deg(experiment.file.attitude.heading_rad)) + " deg. " +
+                  std::to_string(experiment.beams.size()) +
+                  (experiment.beams.size() == 1 ? " lamp, " : " lamps, ") +
+                  std::to_string(experiment.scene.instances.size()) + " parts.";
+  const Table* losses = find_table(result.product, "losses");
+  page.power = losses != nullptr ? stages_of_array(*losses) : stages_of_light(run, light);
+  // The waterfall of page.power replaces this plot.
+  std::erase_if(page.product.plots, [](const Plot& plot) { return plot.name == "loss_waterfall"; });
+  page.notes = experiment.notices;
+  page.stage = stage_of(run, StageMaps::of_product);
+  page.stage->states.push_back(lit_state(run, experiment.lab_from_body, light));
+  add_light(*page.stage, run, experiment.lab_from_body, light, 1);
+  return page_file(std::move(page));
 }
 
-TorqueMapStage::TorqueMapStage() : stage_(std::make_shared<SceneStage>()) {}
-
-std::function<void(const TracedNode&)> TorqueMapStage::watch() {
-  return [stage = stage_.get()](const TracedNode& node) { add_node(*stage, node); };
+NodeWatch add_to(SceneStage& stage) {
+  return [&stage](const TracedNode& node) { add_node(stage, node); };
 }
 
 RunFile torque_map_page(const OpticalRun& run, const WrenchTable& table, const RunResult& result,
-                        TorqueMapStage stage, const PageHead& head) {
+                        SceneStage stage, const PageHead& head) {
   RunPage page = page_of(result, head, {"largest_", "max_"});
   // Maps of the torque, the main result, come first.
   std::ranges::stable_partition(page.product.maps,
                                 [](const Map& map) { return map.title.starts_with("Torque"); });
   const bool by_tilt = table.angles == WrenchTable::Angles::tilt_heading;
-  page.stage = std::move(*stage.stage_);
+  page.stage = std::move(stage);
   page.stage->axes = {axis_of(by_tilt ? "tilt" : "elevation", table.polar_rad),
                       axis_of(by_tilt ? "heading" : "azimuth", table.around_rad)};
   const std::string first = page.stage->axes[0].name + " [deg]";

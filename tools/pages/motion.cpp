@@ -71,15 +71,6 @@ std::vector<Shown> shown_figures(const Product& product) {
   return shown;
 }
 
-std::vector<PlatformState> thinned(const std::vector<PlatformState>& states) {
-  if (states.size() <= most_states) return states;
-  std::vector<PlatformState> kept;
-  for (size_t i = 0; i < most_states; ++i) {
-    kept.push_back(states[i * (states.size() - 1) / (most_states - 1)]);
-  }
-  return kept;
-}
-
 // Largest rotation angle between two consecutive states.
 double largest_turn_rad(const std::vector<PlatformState>& states) {
   double largest = 0.0;
@@ -88,12 +79,6 @@ double largest_turn_rad(const std::vector<PlatformState>& states) {
         std::max(largest, states[i].lab_from_body.angularDistance(states[i - 1].lab_from_body));
   }
   return largest;
-}
-
-// The optical run of an experiment with a scene; empty otherwise.
-std::optional<OpticalRun> optical_run(const MotionRun& run, const RunOptions& options) {
-  if (!run.coupled->light) return std::nullopt;
-  return std::optional<OpticalRun>(std::in_place, options, Console());
 }
 
 // Half-axes of the ellipsoid in body axes: each column is a direction times a length; the longest
@@ -160,10 +145,14 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
   RunPage page = page_of(run.result, head,
                          {"largest_tilt_deg", "final_yaw_deg", "final_rate_rad_s",
                           "mean_array_power_W", "load_unserved_Wh", "battery_left_Wh"});
-  const std::optional<OpticalRun> light = optical_run(run, options);
+  std::optional<OpticalRun> light;  // of an experiment with a scene
+  if (run.coupled->light) light.emplace(options, Console());
   SceneStage stage =
       light ? stage_of(*light, StageMaps::own) : platform_stage(run.run->model.platform);
-  const std::vector<PlatformState> states = thinned(run.coupled->motion.states);
+  std::vector<PlatformState> states;
+  for (const size_t i : even_indices(run.coupled->motion.states.size(), most_states)) {
+    states.push_back(run.coupled->motion.states[i]);
+  }
   const Table* history = find_table(run.result.product, "time_history");
   const bool has_torques = history != nullptr && !torque_columns(*history, 'x', "").empty();
   const bool has_light =

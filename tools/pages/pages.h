@@ -1,18 +1,17 @@
 // The pages of the commands: results with their scene.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "core/provenance.h"
 #include "diagnosis/diagnosis.h"
+#include "images/browser/stage.h"
 #include "tools/runs/optical_run.h"
 #include "tools/runs/result.h"
 
 namespace photorque {
 
 struct MotionRun;
-struct SceneStage;
 struct WrenchTable;
 
 // Properties of a run on a page in addition to its results.
@@ -26,21 +25,12 @@ struct PageHead {
 RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
                    const PageHead& head);
 
-// The body at every attitude or direction of light. It is filled while the nodes are traced,
-// because their maps are not part of the run's result.
-class TorqueMapStage {
- public:
-  TorqueMapStage();
-  // Valid as long as this object.
-  NodeWatch watch();
-
- private:
-  friend RunFile torque_map_page(const OpticalRun&, const WrenchTable&, const RunResult&,
-                                 TorqueMapStage, const PageHead&);
-  std::shared_ptr<SceneStage> stage_;
-};
+// Adds every traced node to a stage: the body at an attitude or direction of light with its maps,
+// which are not part of the run's result. The stage must outlive the function.
+NodeWatch add_to(SceneStage& stage);
+// Page of a table of torques; `stage` contains its nodes.
 RunFile torque_map_page(const OpticalRun& run, const WrenchTable& table, const RunResult& result,
-                        TorqueMapStage stage, const PageHead& head);
+                        SceneStage stage, const PageHead& head);
 
 // Page of the platform's motion, which can be played over time. If the experiment has a scene, it
 // is shown with light traced at some instants of the run; otherwise an ellipsoid with the

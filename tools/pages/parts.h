@@ -17,14 +17,13 @@ namespace photorque {
 RunPage page_of(const RunResult& result, const PageHead& head,
                 const std::vector<std::string>& headlines);
 
-// Power balance of a run: from the array's table "losses" if there is one, otherwise from the lamps
-// to the parts with flux maps.
-std::vector<PowerStage> power_stages(const OpticalRun& run, const OpticalResult& light,
-                                     const Product& product);
-
 // The file "page.html"; its content is made when it is written.
 RunFile page_file(RunPage page);
 
+// At most `most` of `count` indices, evenly distributed, with the first and the last.
+std::vector<size_t> even_indices(size_t count, size_t most);
+// Start and end of a recording [s]; without times the end is before the start.
+Where::Interval span_of(const RecordingSeries& recording);
 // Index of the value nearest to a time in a rising list.
 size_t nearest_instant(const std::vector<double>& time_s, double at_s);
 void add_sentence(std::string& text, const std::string& sentence);
@@ -50,9 +49,6 @@ void add_light(SceneStage& stage, const OpticalRun& run, const RigidTransform& l
 // Adds the light at up to 12 of these attitudes, evenly distributed; each attitude shows the
 // nearest. A remark of the stage states this.
 void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Quat>& lab_from_body);
-
-// Surface of a receiver's bins, for maps supplied by the caller.
-PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiver);
 
 // Stage without a scene: the uniform ellipsoid with the platform's ratios of principal moments, 1 m
 // long, and a rod along body x; with camera, radius and a remark. For a platform with a single axis

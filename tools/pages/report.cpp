@@ -317,12 +317,6 @@ std::string holdout_table(const Holdout& holdout) {
                             table({"channel", "RMS before", "RMS after"}, rows));
 }
 
-std::string times_of(const DataQuality& data) {
-  return row({"Median interval", readable_number(data.median_interval_s, 3) + " s"}) +
-         row({"Jitter (1 σ)", readable_number(data.jitter_s, 2) + " s"}) +
-         row({"Longest gap", readable_number(data.max_gap_s, 2) + " s"});
-}
-
 std::string data_section(const DataQuality& data) {
   std::string rows = row({"Rows in the files", count(data.rows)});
   rows += row({"Rows used", count(data.used)});
@@ -332,7 +326,11 @@ std::string data_section(const DataQuality& data) {
   for (const auto& [reason, n] : data.repaired) {
     rows += row({"Repaired: " + xml_text(name_in_text(reason)), count(n)});
   }
-  if (data.median_interval_s > 0.0) rows += times_of(data);
+  if (data.median_interval_s > 0.0) {
+    rows += row({"Median interval", readable_number(data.median_interval_s, 3) + " s"}) +
+            row({"Jitter (1 σ)", readable_number(data.jitter_s, 2) + " s"}) +
+            row({"Longest gap", readable_number(data.max_gap_s, 2) + " s"});
+  }
   return tag("section", tag("h2", "Data quality") + table({}, rows));
 }
 

@@ -117,11 +117,6 @@ std::vector<StageLamp> lamps_of(const std::vector<Beam>& beams, double radius_m)
   return lamps;
 }
 
-StageCamera camera_of(const Experiment& experiment) {
-  return {experiment.camera.position_m, experiment.camera.target_m,
-          experiment.camera.field_of_view_rad / degree_rad};
-}
-
 }  // namespace
 
 Rgb reflectance_grey(const OpticalSurface& surface) {
@@ -139,7 +134,8 @@ SceneStage stage_of(const OpticalRun& run, StageMaps maps) {
   }
   stage.paintings = paintings_of(experiment, maps);
   stage.lamps = lamps_of(experiment.beams, stage.radius_m);
-  stage.camera = camera_of(experiment);
+  stage.camera = {experiment.camera.position_m, experiment.camera.target_m,
+                  experiment.camera.field_of_view_rad / degree_rad};
   stage.arrows = {{"force of light", "N", StageArrow::Kind::force},
                   {"torque of light", "N m", StageArrow::Kind::torque}};
   return stage;
@@ -154,11 +150,6 @@ StageState lit_state(const OpticalRun& run, const RigidTransform& lab_from_body,
   state.arrow_body = {wrench.mean.force_N, wrench.mean.torque_N_m};
   state.arrow_error_body = {wrench.force_error_N(), wrench.torque_error_N_m()};
   return state;
-}
-
-PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiver) {
-  const SurfaceGrid& grid = run.flux_map(run.flux_map_index(receiver)).grid();
-  return painted(run.experiment().scene, grid, receiver, "");
 }
 
 void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Quat>& lab_from_body) {

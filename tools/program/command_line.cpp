@@ -43,14 +43,18 @@ std::string value_name(const CLI::Option& option) {
   return text;
 }
 
-// Escapes text for troff: hyphens are printed as hyphens, and no line begins a request.
-std::string troff(const std::string& text) {
+std::string escaped(const std::string& text, std::string_view special) {
   std::string safe;
   for (const char c : text) {
-    if (c == '-' || c == '\\') safe += '\\';
+    if (special.find(c) != std::string_view::npos) safe += '\\';
     safe += c;
   }
-  return safe.starts_with('.') ? "\\&" + safe : safe;
+  return safe;
+}
+
+// Escapes text for troff: hyphens are printed as hyphens, and no line begins a request.
+std::string troff(const std::string& text) {
+  return (text.starts_with('.') ? "\\&" : "") + escaped(text, "-\\");
 }
 
 std::string troff_options(const CLI::App& app) {
@@ -96,12 +100,7 @@ std::string bash_script(const CLI::App& app) {
 
 // Escapes characters with a meaning in zsh's descriptions of options.
 std::string zsh_text(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == ':' || c == '[' || c == ']' || c == '\\') safe += '\\';
-    safe += c;
-  }
-  return safe;
+  return escaped(text, ":[]\\");
 }
 
 std::string zsh_script(const CLI::App& app) {
@@ -268,7 +267,8 @@ CommandLine refused(const std::string& mistake, const std::string& verb = "") {
 }  // namespace
 
 CommandLine read_command_line(int argc, char** argv, const std::vector<Verb>& verbs) {
-  CLI::App app("Light, torque and attitude of free-floating platforms.");
+  CLI::App app(
+      "Irradiance, solar-array power, radiation torque and attitude of free-floating platforms.");
   app.name("photorque");
   const Provenance build = build_provenance();
   app.set_version_flag("--version", "photorque " + build.version + " (git " + build.git_hash + ")");

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -18,10 +19,9 @@ namespace photorque {
 struct LinkSettings {
   enum class Jitter { exponential, uniform, gaussian };
   double delay_s = 0.0;  // minimum delay of a packet
-  double jitter_s =
-      // In addition: mean of an exponential, width of a uniform, or scale of a half-normal
-      // distribution.
-      0.0;
+  // In addition: mean of an exponential, width of a uniform, or scale of a half-normal
+  // distribution.
+  double jitter_s = 0.0;
   Jitter jitter = Jitter::exponential;
   double loss = 0.0;  // fraction of lost packets, independent of each other
   // Bursts (E. N. Gilbert, Bell Syst. Tech. J. 39 (1960) 1253; E. O. Elliott, ibid. 42 (1963)
@@ -72,36 +72,27 @@ class SimulatedLink {
     double due_s = now_s + *delay_s;
     if (keeps_order_) due_s = std::max(due_s, last_due_s_);
     last_due_s_ = due_s;
-    const auto later =
-        std::upper_bound(on_the_way_.begin(), on_the_way_.end(), due_s,
-                         [](double due, const DelayedPacket& other) { return due < other.due_s; });
-    on_the_way_.insert(later, {due_s, packet});
+    on_the_way_.emplace(due_s, packet);  // behind packets of the same time
   }
   // The next packet that has arrived by `now_s`, in order of arrival.
   std::optional<Packet> pop(double now_s) {
-    if (on_the_way_.empty() || on_the_way_.front().due_s > now_s) return {};
-    Packet first = on_the_way_.front().packet;
-    on_the_way_.erase(on_the_way_.begin());
-    return first;
+    if (on_the_way_.empty() || next_due_s() > now_s) return {};
+    return on_the_way_.extract(on_the_way_.begin()).mapped();
   }
   // Arrival time of the next packet; infinity if none is in transit.
   double next_due_s() const {
     return on_the_way_.empty() ? std::numeric_limits<double>::infinity()
-                               : on_the_way_.front().due_s;
+                               : on_the_way_.begin()->first;
   }
   // Discards all packets in transit.
   void clear() { on_the_way_.clear(); }
   const LinkImpairment& impairment() const { return fate_; }
 
  private:
-  struct DelayedPacket {
-    double due_s;
-    Packet packet;
-  };
   bool keeps_order_;
   LinkImpairment fate_;
   double last_due_s_ = -std::numeric_limits<double>::infinity();
-  std::vector<DelayedPacket> on_the_way_;  // sorted by due_s
+  std::multimap<double, Packet> on_the_way_;  // by time of arrival
 };
 
 }  // namespace photorque

@@ -159,12 +159,6 @@ ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const Trace
   return power;
 }
 
-ArrayPower held_at(ArrayPower array, const ArrayResult& result) {
-  array.design.temperature_K = result.temperature_K.value;
-  array.design.heat.reset();
-  return array;
-}
-
 std::string origin_of_temperature(const ArrayDesign& design) {
   return design.heat ? "steady state: " + design.heat->in_words() : "as stated";
 }

@@ -40,9 +40,6 @@ ArrayLight light_on(const ArrayPower& array, const OpticalRun& run, std::span<co
 // InputError if the cells deliver more than they absorb.
 ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result);
 
-// `array` with the temperature of its cells fixed at that of `result`.
-ArrayPower held_at(ArrayPower array, const ArrayResult& result);
-
 // Text such as "steady state: both faces in still air of 293.15 K, emissivity 0.84", or "as
 // stated".
 std::string origin_of_temperature(const ArrayDesign& design);

@@ -215,12 +215,6 @@ void print_uniformity(const Console& console, const Table& table) {
   }
 }
 
-// The array at the temperature of `result`, which may change during the day.
-ArrayDesign day_design(ArrayDesign design, const ArrayResult& result) {
-  design.temperature_K = result.temperature_K.value;
-  return design;
-}
-
 Product day_report(const Console& console, const ArrayDesign& design, DaySettings settings,
                    const ArrayResult& result, double tracker_efficiency) {
   settings.tracker_efficiency = tracker_efficiency;
@@ -228,7 +222,7 @@ Product day_report(const Console& console, const ArrayDesign& design, DaySetting
   const double hours = settings.duration_s / 3600.0;
   const double capacity_Wh = settings.battery.capacity_J / 3600.0;
   console.heading("Array and battery over " + show(hours) + " h");
-  console.line("  cells end at            " + show(day.final_temperature_K) + " K, array at " +
+  console.line("  cells end at            " + show(day.temperature_K.back()) + " K, array at " +
                show(day.array_W.back()) + " W, " + show(day.mean_array_W) + " W on average");
   console.line("  load of " + show(settings.load_W) + " W needs " + show(settings.load_W * hours) +
                " Wh; the battery holds " + show(capacity_Wh) + " Wh, which is " +
@@ -287,7 +281,9 @@ Product layout_report(const Console& console, const ArrayPower& array, const Cel
 Product report_array(const Console& console, const OpticalRun& run, const ArrayPower& read,
                      const TraceResult& traced, const ArrayResult& result) {
   Product product;
-  const ArrayPower array = held_at(read, result);
+  ArrayPower array = read;  // at the temperature of `result`
+  array.design.temperature_K = result.temperature_K.value;
+  array.design.heat.reset();
   const ArrayReport& report = array.report;
   std::vector<std::vector<double>> lights = {result.cell_photocurrent_A};
   LossInputs in = loss_inputs(array, run, traced);
@@ -317,8 +313,10 @@ Product report_array(const Console& console, const OpticalRun& run, const ArrayP
                                   in, attitude.tilt_rad));
   }
   if (report.day) {
-    append(product, day_report(console, day_design(read.design, result), *report.day, result,
-                               in.tracker_efficiency.value_or(1.0)));
+    ArrayDesign design = array.design;
+    design.heat = read.design.heat;  // the temperature changes during the day
+    append(product,
+           day_report(console, design, *report.day, result, in.tracker_efficiency.value_or(1.0)));
   }
   if (report.layout_most_tried)
     append(product, layout_report(console, array, tables_for(array, result, lights), lights));

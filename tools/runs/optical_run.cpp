@@ -78,9 +78,9 @@ size_t whole_wrench(Experiment& experiment) {
 // computed from the rays alone.
 double momentum_disagreement(const OpticalRun& run, const OpticalResult& result) {
   const PowerBalance& power_balance = result.power_balance;
-  const BinSums& sums = result.sums[run.wrench_index()];
-  const WrenchEstimate surfaces = wrench_about(run.wrench().total(sums), Vec3::Zero());
-  const double counting_N = counting_error_W(result, sums.replicates) / speed_of_light_m_s;
+  const int replicates = result.sums[run.wrench_index()].replicates;
+  const WrenchEstimate surfaces = run.wrench_of(result);
+  const double counting_N = counting_error_W(result, replicates) / speed_of_light_m_s;
   double worst = 0.0;
   for (int k = 0; k < 3; ++k) {
     const auto i = static_cast<size_t>(k);
@@ -267,6 +267,10 @@ const WrenchReceiver& OpticalRun::wrench() const {
   return *experiment_.receivers[wrench_].wrench;
 }
 
+WrenchEstimate OpticalRun::wrench_of(const TraceResult& result) const {
+  return wrench_about(wrench().total(result.sums[wrench_]), Vec3::Zero());
+}
+
 const FluxMapReceiver& OpticalRun::flux_map(size_t index) const {
   return *experiment_.receivers[index].flux_map;
 }
@@ -402,8 +406,7 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
       console.line("  note: more than is emitted: reflected light returns to it");
     }
   }
-  const WrenchEstimate body =
-      wrench_about(run.wrench().total(result.sums[run.wrench_index()]), Vec3::Zero());
+  const WrenchEstimate body = run.wrench_of(result);
   console.heading("Radiation pressure (body frame, about the centre of rotation)");
   for (int k = 0; k < 3; ++k) {
     console.line(std::string("  force ") + "xyz"[k] + "   " +

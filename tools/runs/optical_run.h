@@ -68,6 +68,8 @@ class OpticalRun {
   size_t flux_map_index(const std::string& name, const std::string& key = "array.receiver") const;
 
   const WrenchReceiver& wrench() const;
+  // Force and torque of the light on the whole scene about the centre of rotation, body frame.
+  WrenchEstimate wrench_of(const TraceResult& result) const;
   const FluxMapReceiver& flux_map(size_t index) const;
   // Light on the inside of closed parts, as a line of text; empty if there is none.
   std::string inside_light(const TraceResult& result) const;

@@ -3,7 +3,7 @@
 
 #include "tools/runs/array_power.h"
 #include "tools/runs/optical_run.h"
-#include "tools/supply/options.h"
+#include "tools/supply/trade.h"
 
 namespace photorque {
 namespace {
@@ -70,8 +70,7 @@ SupplyOption beam_option(const BeamSettings& beam, const SupplyTask& task, const
   for (size_t t = 0; t < task.tilt_rad.size(); ++t) {
     const OpticalResult light = run.run(lab_from_body_at(task.tilt_rad[t], 0.0), {});
     const ArrayResult power = evaluate(array, run, light);
-    const WrenchEstimate wrench =
-        wrench_about(run.wrench().total(light.sums[run.wrench_index()]), Vec3::Zero());
+    const WrenchEstimate wrench = run.wrench_of(light);
     option.curve.push_back({times(power.power_W, beam.converter_efficiency),
                             {wrench.mean.torque_N_m.y(), wrench.torque_error_N_m().y()},
                             {}});

@@ -8,7 +8,7 @@
 #include "core/constants.h"
 #include "core/text/parse.h"
 #include "core/transform.h"
-#include "tools/supply/options.h"
+#include "tools/supply/trade.h"
 
 namespace photorque {
 namespace {

@@ -6,7 +6,7 @@
 #include "attitude/studies/cable.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
-#include "tools/supply/options.h"
+#include "tools/supply/trade.h"
 
 namespace photorque {
 namespace {
@@ -65,7 +65,7 @@ double drawn_C(const SupplyTask& task, double fraction) {
 
 double lithium_torque_N_m(const SupplyTask& task, double electrodes_m, double charge_C,
                           double tilt_rad) {
-  const BatteryCell cell{Vec3::Zero(), Vec3(electrodes_m, 0.0, 0.0), 1.0};
+  const BatteryCell cell{Vec3(electrodes_m, 0.0, 0.0), 1.0};
   const double shift_m_C = com_shift_m_C({&cell, 1}, task.model.platform.mass_kg).x();
   // The disturbance's key is per ampere-hour.
   return disturbance_torque_N_m(task, "battery_discharge",
@@ -77,19 +77,19 @@ double lithium_torque_N_m(const SupplyTask& task, double electrodes_m, double ch
 
 SupplyOption battery_option(const Settings& settings, const SupplyTask& task) {
   const BatteryInputs battery = read_battery(settings);
-  const LoadPhase phase{task.duration_s, task.load_W};
+  const double load_J = task.duration_s * task.load_W;
   SupplyOption option =
       option_from(battery.inputs, task,
                   [&](const std::vector<double>& at) {
                     PlainOption plain;
-                    const double stored_J = energy_J({&phase, 1}) / at[battery.usable];
-                    plain.mass_kg = battery_mass_kg(stored_J, at[battery.specific_energy_J_kg]);
+                    const double stored_J = load_J / at[battery.usable];
+                    plain.mass_kg = stored_J / at[battery.specific_energy_J_kg];
                     for (const double tilt_rad : task.tilt_rad) {
                       plain.delivered_W.push_back(task.load_W);
                       plain.torque_N_m.push_back(lithium_torque_N_m(task, at[battery.electrodes_m],
                                                                     drawn_C(task, 1.0), tilt_rad));
                     }
-                    plain.figures = {energy_J({&phase, 1}) / 3600.0, stored_J / 3600.0};
+                    plain.figures = {load_J / 3600.0, stored_J / 3600.0};
                     return plain;
                   },
                   {"energy_Wh", "capacity_Wh"});

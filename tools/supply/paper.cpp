@@ -4,7 +4,7 @@
 #include "core/constants.h"
 #include "photovoltaics/cell/cell.h"
 #include "photovoltaics/cell/model.h"
-#include "tools/supply/report.h"
+#include "tools/supply/trade.h"
 
 namespace photorque {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/supply/report.h"
+#include "tools/supply/trade.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,28 +9,39 @@
 namespace photorque {
 namespace {
 
-Table options_table(const SupplyTrade& trade) {
+// A figure that is both a column of the table and a quantity; `error`: the column of its error, or
+// null.
+struct OptionFigure {
+  const char *name, *error;
+  Estimate value;
+};
+
+std::vector<OptionFigure> figures_of(const SupplyOption& option, const SupplyTask& task) {
+  const SupplyDisturbance worst = disturbance_of(option, task);
+  const Estimate angle_deg_W{worst.angle_rad_W.value / degree_rad,
+                             worst.angle_rad_W.standard_error / degree_rad};
+  return {{"mass_kg", "mass_error_kg", option.mass_kg},
+          {"source_W", "source_error_W", option.source_W},
+          {"delivered_level_W", nullptr, option.curve.front().delivered_W},
+          {"delivered_tilted_W", "delivered_tilted_error_W", option.curve.back().delivered_W},
+          {"torque_N_m", "torque_error_N_m", worst.torque_N_m},
+          {"torque_N_m_per_W", "torque_error_N_m_per_W", worst.torque_N_m_W},
+          {"angle_deg_per_W", "angle_error_deg_per_W", angle_deg_W},
+          {"alternating_N_m", nullptr, {worst.alternating_N_m, 0.0}}};
+}
+
+// Adds the table "supply" and the quantities.
+void add_supplies(const SupplyTrade& trade, Product& product) {
   Table table = Table::of("supply", "Power supplies");
   for (const SupplyOption& option : trade.options) {
-    const SupplyDisturbance worst = disturbance_of(option, trade.task);
-    table.row()
-        .set("way", option.name)
-        .set("mass_kg", option.mass_kg.value)
-        .set("mass_error_kg", option.mass_kg.standard_error)
-        .set("source_W", option.source_W.value)
-        .set("source_error_W", option.source_W.standard_error)
-        .set("delivered_level_W", option.curve.front().delivered_W.value)
-        .set("delivered_tilted_W", option.curve.back().delivered_W.value)
-        .set("delivered_tilted_error_W", option.curve.back().delivered_W.standard_error)
-        .set("torque_N_m", worst.torque_N_m.value)
-        .set("torque_error_N_m", worst.torque_N_m.standard_error)
-        .set("torque_N_m_per_W", worst.torque_N_m_W.value)
-        .set("torque_error_N_m_per_W", worst.torque_N_m_W.standard_error)
-        .set("angle_deg_per_W", worst.angle_rad_W.value / degree_rad)
-        .set("angle_error_deg_per_W", worst.angle_rad_W.standard_error / degree_rad)
-        .set("alternating_N_m", worst.alternating_N_m);
+    Table::Row row = table.row().set("way", option.name);
+    for (const auto& [name, error, value] : figures_of(option, trade.task)) {
+      row.set(name, value.value);
+      if (error != nullptr) row.set(error, value.standard_error);
+      product.quantities.push_back({option.symbol + "_" + name, value});
+    }
   }
-  return table;
+  product.tables.push_back(std::move(table));
 }
 
 Table tilt_table(const SupplyTrade& trade) {
@@ -119,32 +130,14 @@ Plot charge_plot(const SupplyTrade& trade) {
   return plot;
 }
 
-void add_quantities(const SupplyTrade& trade, Product& product) {
-  for (const SupplyOption& option : trade.options) {
-    const SupplyDisturbance worst = disturbance_of(option, trade.task);
-    const auto put = [&](const std::string& name, const Estimate& value) {
-      product.quantities.push_back({option.symbol + "_" + name, value});
-    };
-    put("mass_kg", option.mass_kg);
-    put("source_W", option.source_W);
-    put("delivered_level_W", option.curve.front().delivered_W);
-    put("delivered_tilted_W", option.curve.back().delivered_W);
-    put("torque_N_m", worst.torque_N_m);
-    put("torque_N_m_per_W", worst.torque_N_m_W);
-    put("angle_deg_per_W",
-        {worst.angle_rad_W.value / degree_rad, worst.angle_rad_W.standard_error / degree_rad});
-    put("alternating_N_m", {worst.alternating_N_m, 0.0});
-  }
-}
-
 }  // namespace
 
 Product supply_product(const SupplyTrade& trade) {
   Product product;
-  product.tables = {options_table(trade), tilt_table(trade), figures_of_options(trade),
-                    charge_table(trade), paper_supply_table(trade)};
+  add_supplies(trade, product);
+  product.tables.insert(product.tables.end(), {tilt_table(trade), figures_of_options(trade),
+                                               charge_table(trade), paper_supply_table(trade)});
   product.plots = {tilt_plot(trade), charge_plot(trade)};
-  add_quantities(trade, product);
   return product;
 }
 

@@ -7,7 +7,6 @@
 #include "attitude/propagation/run.h"
 #include "core/constants.h"
 #include "core/transform.h"
-#include "tools/supply/options.h"
 
 namespace photorque {
 

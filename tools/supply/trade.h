@@ -8,6 +8,8 @@
 #include "attitude/model/dynamics.h"
 #include "core/product.h"
 #include "core/settings/typed_keys.h"
+#include "tools/runs/console.h"
+#include "tools/runs/options.h"
 
 namespace photorque {
 
@@ -79,5 +81,71 @@ struct SupplyDisturbance {
   double alternating_N_m = 0.0;
 };
 SupplyDisturbance disturbance_of(const SupplyOption& option, const SupplyTask& task);
+
+// ---- The power supplies, each from its table of [supply_trade].
+
+// Range of an efficiency.
+inline constexpr Range conversion_range{0.0, 1.0, true, false};
+
+// [supply_trade.battery]
+SupplyOption battery_option(const Settings& settings, const SupplyTask& task);
+// Torque due to its lithium at zero tilt, at a drawn charge given as a fraction of the task's
+// charge.
+double battery_torque_N_m(const Settings& settings, const SupplyTask& task, double fraction);
+
+// [supply_trade.cable]
+SupplyOption cable_option(const Settings& settings, const SupplyTask& task);
+
+// [[supply_trade.microwave]]
+SupplyOption microwave_option(const Settings& settings, const SupplyTask& task);
+
+// [supply_trade.induction]
+SupplyOption induction_option(const Settings& settings, const SupplyTask& task);
+
+// [[supply_trade.beam]]: traces its experiment at every tilt and evaluates its array.
+struct BeamSettings {
+  std::string name, experiment;
+  RunOptions run;
+  double lamp_efficiency = 0.0, converter_efficiency = 0.0, array_mass_kg = 0.0;
+};
+BeamSettings read_beam(const Settings& settings, const RunOptions& options);
+SupplyOption beam_option(const BeamSettings& beam, const SupplyTask& task, const Console& console);
+
+// Declarations of the tables, and of [supply_trade] with all of them.
+Key battery_table();
+Key cable_table();
+Key microwave_table();
+Key induction_table();
+Key beam_table();
+Key supply_table();
+
+// Task of the supplies in [supply_trade].
+SupplyTask read_supply_task(const Settings& root, const Settings& supply_trade);
+
+// ---- The comparison as tables and pictures, and comparison with the paper's figures.
+
+struct SupplyTrade {
+  SupplyTask task;
+  std::vector<SupplyOption> options;
+  // Torque due to the battery's lithium at zero tilt, by the drawn fraction of its charge.
+  std::vector<double> charge_fraction, battery_torque_N_m;
+};
+
+// Tables "supply" (a row per supply), "supply_by_tilt", "supply_figures", "battery_by_charge" and
+// "paper_supply"; plots "supply_over_tilt" and "battery_torque_by_charge"; quantities NAME_….
+Product supply_product(const SupplyTrade& trade);
+void print_supply(const Console& console, const Product& product, const SupplyTrade& trade);
+
+// Section III.B of the paper: each figure with the computed value and the reason for the
+// difference; NaN if the comparison does not compute it.
+Table paper_supply_table(const SupplyTrade& trade);
+
+// Maximum fraction of monochromatic light that a single-junction cell can convert to electric
+// power: every photon is absorbed, and recombination is purely radiative, into the front hemisphere
+// only. Source: W. Shockley, H. J. Queisser, J. Appl. Phys. 32 (1961) 510, with the blackbody
+// integral over photons above the gap; for one wavelength M. A. Green, Prog. Photovolt. 9 (2001)
+// 257.
+double radiative_limit(double wavelength_m, double irradiance_W_m2, double gap_J,
+                       double temperature_K);
 
 }  // namespace photorque

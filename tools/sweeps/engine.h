@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "tools/sweeps/claims.h"
 #include "tools/sweeps/database.h"
 #include "tools/sweeps/identity.h"
 
@@ -27,6 +26,27 @@ struct SweepFiles {
   std::filesystem::path done_shard(size_t number, size_t count) const;  // shards/3-of-8.done.sqlite
   // The existing databases of shards; with `unfinished` also those of incomplete shards.
   std::vector<std::filesystem::path> shards(bool unfinished) const;
+};
+
+// Claims on runs and other names by the processes that work on one database, as locks on bytes of a
+// file. The system releases them when a process ends for any reason. Two names share a byte once in
+// 10^18 pairs; the second then waits. (On file systems without locks all claims succeed.)
+class Claims {
+ public:
+  // A claim on a run; released by its last copy.
+  using Claim = std::shared_ptr<const void>;
+
+  // Creates the file if it is missing.
+  explicit Claims(const std::filesystem::path& path);
+  ~Claims();
+  Claims(const Claims&) = delete;
+  Claims& operator=(const Claims&) = delete;
+
+  // Claims a name. If another process has it: null, or `waits` until it is released.
+  Claim take(const std::string& name, bool waits = false) const;
+
+ private:
+  int descriptor_ = -1;
 };
 
 class RunEngine {
@@ -58,7 +78,7 @@ class RunEngine {
   // The database; created if missing.
   RunDatabase& database();
   bool has_database() const { return database_ != nullptr; }
-  Claims::Claim wait_for_others(const std::string& name) { return claims_->wait_for(name); }
+  Claims::Claim wait_for_others(const std::string& name) { return claims_->take(name, true); }
   RunIdentity& identity() { return identity_; }
 
  private:

@@ -1,12 +1,235 @@
 #include "tools/sweeps/plan.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
 
-#include "tools/sweeps/keys.h"
-#include "tools/sweeps/values.h"
+#include "core/numerics/quadrature.h"
+#include "core/numerics/random.h"
+#include "core/numerics/root.h"
+#include "core/text/format.h"
+#include "scenes/experiment/document.h"
 
 namespace photorque {
 namespace {
+
+// ---- Keys of [sweep]
+
+constexpr size_t max_designs = 1000000;
+
+// Keys of [[sweep.axis]], `mean_over`, `worst_over` and `tolerance`.
+namespace axis_key {
+constexpr auto most_designs = static_cast<int64_t>(max_designs);
+
+constexpr TextKey key(
+    "key",
+    "any key outside `[sweep]`, as in `--set`: `source[0].power_W`, `source[0].position_m[2]`");
+constexpr TextKey name("name", "", "name of the axis in pictures, such as `\"standoff\"`");
+constexpr OtherKey values("values", Key::an_array,
+                          "list of the values (numbers, strings or arrays); *or*",
+                          {.optional = true});
+constexpr NumbersKey weights("weights", Range::not_negative(), "weight of each value",
+                             {.usually = "equal"});
+constexpr NumberKey from(
+    "from", {},
+    "first value, in the unit of `key`; a random plan draws uniformly between `from` and `to`",
+    {.optional = true});
+constexpr NumberKey to("to", {}, "last value", {.optional = true});
+constexpr IntegerKey count(
+    "count", 2, most_designs,
+    "number of values including both ends; not used in a random plan or by `optimise`",
+    {.optional = true});
+constexpr IntegerKey nodes(
+    "count", 1, static_cast<int64_t>(max_gauss_nodes),
+    "number of Gauss–Legendre points; exact for polynomials of degree 2 `count` − 1",
+    {.optional = true});
+constexpr ChoiceKey spacing("spacing",
+                            {{"linear", "equal steps"},
+                             {"logarithmic", "equal factors, ends above 0"}},
+                            0, "spacing of the values");
+constexpr NumberKey mean("mean", {}, "mean of a normal distribution in a random plan, with `sigma`",
+                         {.optional = true});
+constexpr NumberKey sigma("sigma", Range::positive(), "standard deviation", {.optional = true});
+constexpr NumberKey half_width("half_width", Range::positive(), "uniform within ± this; *or*",
+                               {.optional = true});
+constexpr FlagKey seed(
+    "seed", false,
+    "true: the key is set to the number of the copy (1, 2, …), such as `source[0].spread_seed` for "
+    "LEDs with `power_spread` and `aim_spread_deg`");
+constexpr FlagKey relative("relative", false,
+                           "true: `sigma` and `half_width` are fractions of the value");
+}  // namespace axis_key
+
+namespace constraint_key {
+constexpr TextKey figure("figure", "a name in `summary.json`, or `\"\\|NAME\\|\"`");
+constexpr NumberKey at_least("at_least", {}, "lower limit, in the unit of the figure",
+                             {.usually = "none"});
+constexpr NumberKey at_most("at_most", {}, "upper limit, in the unit of the figure",
+                            {.usually = "none"});
+}  // namespace constraint_key
+
+namespace sweep_key {
+constexpr TextKey verb("verb", "power",
+                       "command of every design: `trace`, `power`, `torque-map`, `budget`, "
+                       "`balance`, `propagate`, `fit-cell`");
+constexpr TextsKey figures(
+    "figures",
+    "names of figures in `summary.json`, which become columns of `sweep.csv` and are plotted",
+    {.usually = "all"});
+constexpr OtherKey maximise(
+    "maximise", Key::a_text | Key::an_array,
+    "one or several figures to maximise; `\"\\|NAME\\|\"` is the absolute value of a figure. The "
+    "first objective ranks the designs, several give the Pareto front",
+    {.optional = true});
+constexpr OtherKey minimise("minimise", Key::a_text | Key::an_array,
+                            "figures to minimise, as in `maximise`", {.optional = true});
+constexpr IntegerKey designs("designs", 2, axis_key::most_designs,
+                             "number of points of a random plan (Owen-scrambled Sobol sequence)",
+                             {.usually = "a grid"});
+constexpr IntegerKey seed("seed", 1, 0, INT64_MAX,
+                          "seed of a random plan (`--seed` is that of the rays)");
+constexpr TablesKey axis("axis", "axes of the plan, at least one; the last varies fastest");
+constexpr TablesKey mean_over(
+    "mean_over",
+    "key that takes several values within each design; the figures are means over these");
+constexpr TablesKey worst_over(
+    "worst_over",
+    "key that takes the values of a grid axis within each design. Objectives and constrained "
+    "figures are taken at their worst value, other figures where the first objective (else the "
+    "first constrained figure) is worst");
+constexpr TablesKey constraint("constraint",
+                               "limit of a figure, required at every value of `worst_over`");
+constexpr TablesKey tolerance(
+    "tolerance", "a manufacturing tolerance: every number of the key has a separate random error");
+constexpr IntegerKey built_copies("built_copies", 100, 2, 100000,
+                                  "copies of a design, each with its own draws; the n-th "
+                                  "copy has the same draws in every design");
+constexpr NumberKey built_fraction("built_fraction", {0.5, 1.0, false, true},
+                                   "fraction of the copies that reach the stated value",
+                                   {.optional = true});
+constexpr ChoiceKey built_of("built_of",
+                             {{"best", "copies of the best and the nominal design"},
+                              {"every",
+                               "copies of every design; designs are then ranked by the "
+                               "value that the fraction reaches (column `p95_FIGURE`)"}},
+                             0, "designs of which copies are computed");
+constexpr IntegerKey built_seed("built_seed", 1, 0, INT64_MAX, "seed of the random copies");
+constexpr IntegerKey global("global", 100, 0, 100000,
+                            "`optimise`: number of evaluations of the global search");
+constexpr IntegerKey local("local", 100, 0, 100000,
+                           "number of evaluations of the local search from the best of these");
+constexpr NumberKey precision(
+    "precision", {1e-8, 0.1},
+    "`optimise`: step at which the search ends, relative to the range of each axis",
+    {.optional = true});
+constexpr TableKey sweep("sweep", "one command over many designs");
+}  // namespace sweep_key
+
+// ---- Values of a key, as TOML text
+
+bool is_finite(const SettingsNode& node) {
+  const auto* real = std::get_if<double>(&node.value);
+  const auto* items = std::get_if<SettingsNode::Array>(&node.value);
+  return (real == nullptr || std::isfinite(*real)) &&
+         (items == nullptr || std::ranges::all_of(*items, is_finite));
+}
+
+std::vector<std::string> listed_values(const Settings& axis) {
+  const auto* items = std::get_if<SettingsNode::Array>(&axis.raw(axis_key::values).value);
+  if (items == nullptr || items->empty()) {
+    throw axis.error(axis_key::values, describe(axis.raw(axis_key::values)),
+                     "an array of at least one value");
+  }
+  std::vector<std::string> values;
+  for (const SettingsNode& item : *items) {
+    if (item.is_table())
+      throw axis.error(axis_key::values, describe(item), "a number, a text, an array");
+    if (!is_finite(item)) throw axis.error(axis_key::values, toml_text(item), "finite numbers");
+    values.push_back(toml_text(item));
+  }
+  return values;
+}
+
+std::vector<std::string> stepped_values(const Settings& axis) {
+  const double from = axis.get(axis_key::from), to = axis.get(axis_key::to);
+  const auto count = axis.get(axis_key::count);
+  const bool logarithmic = axis.get(axis_key::spacing) == 1;
+  if (logarithmic && !(from > 0.0 && to > 0.0)) {
+    throw axis.error(axis_key::spacing,
+                     "\"logarithmic\" from " + toml_number(from) + " to " + toml_number(to),
+                     "ends above zero");
+  }
+  std::vector<std::string> values;
+  for (int64_t i = 0; i < count; ++i) {
+    const double fraction = static_cast<double>(i) / static_cast<double>(count - 1);
+    values.push_back(toml_number(logarithmic ? from * std::pow(to / from, fraction)
+                                             : from + fraction * (to - from)));
+  }
+  return values;
+}
+
+MeanOver weighted_list(const Settings& axis) {
+  MeanOver all{"", listed_values(axis), {}};
+  if (axis.has(axis_key::weights)) {
+    all.weights = axis.get(axis_key::weights);
+  } else {
+    all.weights.assign(all.values.size(), 1.0);
+  }
+  const double sum = std::accumulate(all.weights.begin(), all.weights.end(), 0.0);
+  if (all.weights.size() != all.values.size() || !(sum > 0.0)) {
+    throw axis.error(
+        axis_key::weights,
+        std::to_string(all.weights.size()) + " numbers of sum " + toml_number(sum),
+        "a number for each of " + std::to_string(all.values.size()) + " values, not all zero");
+  }
+  for (double& weight : all.weights) weight /= sum;
+  return all;
+}
+
+// Values of a grid axis: `values = […]`, or `from`, `to`, `count` (and `spacing`), including both
+// ends.
+std::vector<std::string> grid_values(const Settings& axis) {
+  return axis.has(axis_key::values) ? listed_values(axis) : stepped_values(axis);
+}
+
+// Values of an axis (`from` and `to`, or `mean` and `sigma`) in a random plan. Owen-scrambled Sobol
+// points; every `axis` has a separate dimension.
+std::vector<std::string> random_values(const Settings& axis, uint64_t seed, size_t number,
+                                       size_t designs) {
+  if (axis.has(axis_key::values)) {
+    throw axis.error(axis_key::values, "a list, in a plan with random designs",
+                     "from and to, or mean and sigma; or a grid, without designs");
+  }
+  const std::vector<double> fractions = sobol_column(seed, number, designs);
+  std::vector<std::string> values;
+  if (axis.has(axis_key::mean)) {
+    const double mean = axis.get(axis_key::mean), sigma = axis.get(axis_key::sigma);
+    for (const double u : fractions) {
+      values.push_back(toml_number(mean + sigma * normal_quantile(u)));
+    }
+  } else {
+    const double from = axis.get(axis_key::from), to = axis.get(axis_key::to);
+    for (const double u : fractions) values.push_back(toml_number(from + u * (to - from)));
+  }
+  return values;
+}
+
+// Values with weights that sum to one: `values` with `weights` (equal by default), or the nodes of
+// the Gauss–Legendre rule with `count` nodes between `from` and `to`.
+MeanOver mean_values(const Settings& axis) {
+  if (axis.has(axis_key::values)) return weighted_list(axis);
+  const double from = axis.get(axis_key::from), to = axis.get(axis_key::to);
+  const auto count = axis.get(axis_key::nodes);
+  MeanOver all;
+  for (const QuadratureNode& node : gauss_legendre(static_cast<size_t>(count))) {
+    all.values.push_back(toml_number(0.5 * (from + to) + 0.5 * (to - from) * node.x));
+    all.weights.push_back(0.5 * node.weight);
+  }
+  return all;
+}
+
+// ---- The plan
 
 std::string outside_sweep(const Settings& axis) {
   std::string key = axis.get(axis_key::key);
@@ -108,8 +331,8 @@ void require_distinct_keys(const Settings& sweep, const SweepPlan& plan) {
 
 void read_within(const Settings& sweep, SweepPlan& plan) {
   for (const Settings& table : sweep.get(sweep_key::mean_over)) {
-    WeightedValues all = mean_values(table);
-    plan.mean_over.push_back({outside_sweep(table), std::move(all.values), std::move(all.weights)});
+    plan.mean_over.push_back(mean_values(table));
+    plan.mean_over.back().key = outside_sweep(table);
   }
   for (const Settings& table : sweep.get(sweep_key::worst_over)) {
     plan.worst_over.push_back({outside_sweep(table), grid_values(table)});
@@ -163,6 +386,34 @@ SearchPlan read_search(const Settings& sweep) {
 }
 
 }  // namespace
+
+std::string toml_number(double value) {
+  return printed("%.15g", value);
+}
+
+std::string toml_text(const SettingsNode& node) {
+  if (const auto* real = std::get_if<double>(&node.value)) return toml_number(*real);
+  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
+  if (array == nullptr) return toml_value(node);
+  return "[" + joined_text(*array, ", ", toml_text) + "]";
+}
+
+// By bisection to rounding errors.
+double normal_quantile(double fraction) {
+  const auto too_low = [&](double x) {
+    return 0.5 * std::erfc(-x / std::numbers::sqrt2) < fraction;
+  };
+  return bisect(-10.0, 10.0, too_low, {60}).middle();
+}
+
+std::vector<double> sobol_column(uint64_t seed, size_t dimension, size_t count) {
+  const SobolSequence sequence({seed, 0, static_cast<uint32_t>(dimension / sobol_dimensions)});
+  std::vector<double> column;
+  for (size_t i = 0; i < count; ++i) {
+    column.push_back(sequence.point(static_cast<uint32_t>(i))[dimension % sobol_dimensions]);
+  }
+  return column;
+}
 
 std::string missing_search_keys(const SweepPlan& plan) {
   if (plan.objectives.empty()) return "maximise or minimise";

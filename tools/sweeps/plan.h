@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/settings/settings.h"
+#include "core/settings/typed_keys.h"
 #include "tools/sweeps/outcome.h"
 
 namespace photorque {
@@ -123,7 +123,20 @@ struct SweepPlan {
 // the key of their axis.
 SweepPlan read_sweep_plan(const Settings& sweep);
 
+// Declaration of the table [sweep].
+Key sweep_table();
+
 // Keys that a plan lacks for an optimisation; empty if it is complete.
 std::string missing_search_keys(const SweepPlan& plan);
+
+// A number with 15 digits, which removes the rounding residue of its binary form.
+std::string toml_number(double value);
+
+// A value as TOML text, with its numbers by toml_number().
+std::string toml_text(const SettingsNode& node);
+
+// Sobol points of one dimension in (0, 1), and quantiles of the standard normal distribution.
+std::vector<double> sobol_column(uint64_t seed, size_t dimension, size_t count);
+double normal_quantile(double fraction);
 
 }  // namespace photorque

@@ -9,8 +9,8 @@
 #include "core/settings/settings.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
+#include "tools/sweeps/evaluator.h"
 #include "tools/sweeps/labels.h"
-#include "tools/sweeps/tolerances.h"
 
 namespace photorque {
 namespace {

@@ -12,6 +12,7 @@
 #include "core/settings/settings.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
+#include "diagnosis/guess/file_head.h"
 #include "photovoltaics/fit/conditions.h"
 #include "photovoltaics/fit/curve_text.h"
 #include "photovoltaics/fit/fit.h"
@@ -25,10 +26,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The text of a file that names its columns in numbered lines or between other separators than the
+// cells of its rows: these names and the rows, as diagnose --guess reads them. Nothing for others.
+std::optional<std::string> text_with_names(const fs::path& file) {
+  try {
+    const FileHead head = head_of(file, {});
+    if (!head.is_split_otherwise) return std::nullopt;
+    std::string text = whole_text(file, head.header);
+    if (!curve_columns_in(text, file.string()).empty()) return text;
+  } catch (const InputError&) {  // another file
+  }
+  return std::nullopt;
+}
+
+std::vector<MeasuredCurve> curves_of(const fs::path& file) {
+  try {
+    return curves_in(whole_text(file), file.string());
+  } catch (const InputError&) {
+    const std::optional<std::string> text = text_with_names(file);
+    if (!text) throw;
+    return curves_in(*text, file.string());
+  }
+}
+
 // Adds the cleaned curves of a file; notes state the omitted points.
 void add_curves(const fs::path& file, std::optional<double> irradiance_W_m2,
                 std::optional<double> temperature_K, FitTask& task) {
-  std::vector<MeasuredCurve> curves = curves_in(whole_text(file), file.string());
+  std::vector<MeasuredCurve> curves = curves_of(file);
   for (size_t k = 0; k < curves.size(); ++k) {
     MeasuredCurve& curve = curves[k];
     const std::string name =
@@ -282,22 +306,8 @@ void print_misfit(const Console& console, double scatter) {
   console.line(
       "  warning: the scatter is " + readable_number(scatter, 3) +
       " times that of the stated noise: one diode does not describe these data. The errors "
-      "follow from the scatter; `photorque diagnose` with [module] searches for the cause");
-}
-
-void print_left_out(const Console& console, const FitTask& task,
-                    const std::vector<OutlierReading>& outliers) {
-  for (const std::string& note : task.notes) console.line("  note: " + note);
-  if (outliers.empty()) return;
-  std::string where;
-  constexpr size_t shown = 5;
-  for (size_t i = 0; i < std::min(shown, outliers.size()); ++i) {
-    where += (i > 0 ? ", " : "") + show(outliers[i].voltage_V) + " V " +
-             show(outliers[i].current_A) + " A";
-  }
-  console.line("  note: left out " + std::to_string(outliers.size()) +
-               " outliers, more than eight errors off: " + where +
-               (outliers.size() > shown ? ", …" : ""));
+      "follow from the scatter; `photorque diagnose` with [module] tests shade, cracks and other "
+      "faults");
 }
 
 // States whether the irradiance of single readings is used, if any curve has it.
@@ -347,15 +357,6 @@ Product fit_even_light(const FitTask& task, const Console& console) {
   Product product = parameter_product(rows);
   add_cell_plot(task, cell, fit.diode.photocurrent_A.value, product);
   return product;
-}
-
-// Prints the law of the shunt, followed by `more`.
-void print_shunt_law(const Console& console, ShuntLaw law, const std::string& more) {
-  console.line(std::string("  shunt: ") +
-               (law == ShuntLaw::constant  ? "constant"
-                : law == ShuntLaw::inverse ? "inversely proportional to the light"
-                                           : "exponential in the light (PVsyst)") +
-               more);
 }
 
 // Adds the table "curves" and the plot of the first curve.
@@ -577,7 +578,7 @@ namespace photorque::verbs::fit_cell {
 Verb kind() {
   return {"fit-cell",
           "Solar cell parameters, with errors, from current-voltage sweeps or a datasheet",
-          command_that_writes(run_fit_cell),
+          command_that_writes(experiment_options, run_fit_cell),
           {"fit"},
           "[fit]",
           [](const RunOptions& options) { return run_fit_cell(options, Console()); }};

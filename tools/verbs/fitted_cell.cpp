@@ -217,8 +217,8 @@ namespace {
 // AM1.5G sunlight. Requires the area of the module.
 double efficiency_peak_of(const ListedModule& module) {
   const WeighedSpectrum sunlight[] = {{{.shape = Spectrum::Shape::am15g}}};
-  const double amperes_W =
-      band_responsivity_A_W(silicon_quantum_efficiency(1.0), Bands{}, sunlight)[0];
+  const double amperes_W = band_responsivity_A_W(
+      quantum_efficiency_of("silicon_interdigitated", 1.0), Bands{}, sunlight)[0];
   return module.photocurrent_A /
          (amperes_W * module.rated.irradiance_W_m2 * module.cell.reference_area_m2);
 }
@@ -274,6 +274,29 @@ Product list_module(const ListedModule& module, const Console& console) {
   Product product = parameter_product(rows);
   add_cell_plot({}, CellCurve(in_light(p, module.photocurrent_A)), module.photocurrent_A, product);
   return product;
+}
+
+void print_left_out(const Console& console, const FitTask& task,
+                    const std::vector<OutlierReading>& outliers) {
+  for (const std::string& note : task.notes) console.line("  note: " + note);
+  if (outliers.empty()) return;
+  std::string where;
+  constexpr size_t shown = 5;
+  for (size_t i = 0; i < std::min(shown, outliers.size()); ++i) {
+    where += (i > 0 ? ", " : "") + show(outliers[i].voltage_V) + " V " +
+             show(outliers[i].current_A) + " A";
+  }
+  console.line("  note: left out " + std::to_string(outliers.size()) +
+               " outliers, more than eight errors off: " + where +
+               (outliers.size() > shown ? ", …" : ""));
+}
+
+void print_shunt_law(const Console& console, ShuntLaw law, const std::string& more) {
+  console.line(std::string("  shunt: ") +
+               (law == ShuntLaw::constant  ? "constant"
+                : law == ShuntLaw::inverse ? "inversely proportional to the light"
+                                           : "exponential in the light (PVsyst)") +
+               more);
 }
 
 }  // namespace photorque

@@ -67,6 +67,12 @@ void print_key(const Console& console, const char* name, double value,
 void print_cell(const Console& console, const SingleDiode& diode, const FitTask& task,
                 const CellParameters& reference = {});
 
+// Prints the notes of the input, and the outliers that the fit left out.
+void print_left_out(const Console& console, const FitTask& task,
+                    const std::vector<OutlierReading>& outliers);
+// Prints the law of the shunt, followed by `more`.
+void print_shunt_law(const Console& console, ShuntLaw law, const std::string& more);
+
 // Prints the cell of a library module as keys, with its listed and computed ratings.
 Product list_module(const ListedModule& module, const Console& console);
 

@@ -30,7 +30,7 @@ struct Options : CommandOptions {
 void add_options(Command& command, Options& options) {
   command.add_experiment(options, Command::Folder::none);
   command.list.front().help = "Experiment file to write (TOML)";
-  command.add("--scene", options.scene, "Model (glTF, GLB, STL or OBJ) that the light falls on");
+  command.add("--scene", options.scene, "Model that is illuminated (glTF, GLB, STL or OBJ)");
 }
 
 constexpr const char* platform_text = R"(

@@ -5,7 +5,6 @@
 #include "core/text/parse.h"
 #include "tools/sweeps/optimiser.h"
 #include "tools/sweeps/report.h"
-#include "tools/sweeps/values.h"
 #include "tools/verbs/studies.h"
 
 namespace photorque::verbs::optimise {
@@ -173,7 +172,7 @@ void run(const CommandOptions& options, const Program& program) {
 
 Verb kind() {
   return {"optimise",
-          "The best design over the axes of a sweep, without derivatives",
+          "Search for the best design within the axes of [sweep]",
           command_with(traced_options, run),
           {"sweep"},
           "[sweep]"};

@@ -41,21 +41,20 @@ PowerRun run_power(const RunOptions& options, const Console& console) {
 namespace photorque::verbs::power {
 namespace {
 
-void run(const CommandOptions& options, const Program&) {
-  const Console console = terminal(options);
+RunResult run(const CommandOptions& options, const Console& console) {
   PowerRun run = run_power(options, console);
   if (options.page) {
     run.result.files.push_back(light_page(*run.run, run.light, run.result, page_head(options)));
   }
-  write_results(options, console, run.result);
+  return std::move(run.result);
 }
 
 }  // namespace
 
 Verb kind() {
   return {"power",
-          "Trace, then the solar array: current-voltage curve and maximum power point",
-          command_with(traced_page_options, run),
+          "Results of trace, and the solar array: current-voltage curve, maximum power point",
+          command_that_writes(traced_page_options, run),
           {"scene", "material", "source", "receiver", "joint", "attitude", "trace", "array",
            "published", "effect", "environment", "disturbance"},
           "[array]",

@@ -94,7 +94,7 @@ void add_options(Command& command, Options& options) {
               "Print the meaning of one key, such as source.power_W, instead of the schema");
   command
       .add("--document", options.documents,
-           "Instead of the schema: update the tables of keys in this Markdown file")
+           "Update the tables of keys in this Markdown file, instead of writing the schema")
       .is_one_each = true;
   command.mistake = [&options] {
     return options.json && (!options.key.empty() || !options.documents.empty())
@@ -121,9 +121,10 @@ void run(const Options& options, const Program&) {
 }  // namespace
 
 Verb kind() {
-  return {"schema",
-          "Every key of an experiment: as a JSON Schema for editors, or one key's meaning",
-          command_with(add_options, run)};
+  return {
+      "schema",
+      "All keys of an experiment as a JSON Schema for editors, or the meaning of one key (--key)",
+      command_with(add_options, run)};
 }
 
 }  // namespace photorque::verbs::schema

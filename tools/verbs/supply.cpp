@@ -3,24 +3,23 @@
 
 #include "attitude/propagation/run.h"
 #include "tools/runs/attitude_run.h"
-#include "tools/supply/options.h"
-#include "tools/supply/report.h"
+#include "tools/supply/trade.h"
 #include "tools/verbs/verb.h"
 
 namespace photorque {
 namespace {
 
-// All supplies except those by light, whose tables are returned.
-struct TradeWithoutBeams {
+// All supplies, except that those by light are not traced yet.
+struct SupplyInput {
   SupplyTrade trade;
-  std::vector<Settings> beams;
+  std::vector<BeamSettings> beams;
 };
 
-TradeWithoutBeams read_trade(const Settings& root, const Settings& s) {
-  TradeWithoutBeams read;
-  read.beams = s.tables("beam");
-  read.trade.task = read_supply_task(root, s);
+SupplyInput read_supply(const Settings& root, const RunOptions& options) {
+  const Settings s = own_table(root, "supply_trade", true);
+  SupplyInput read;
   SupplyTrade& trade = read.trade;
+  trade.task = read_supply_task(root, s);
   const Settings battery = s.table_or_empty("battery");
   trade.options.push_back(battery_option(battery, trade.task));
   constexpr int steps = 20;
@@ -34,31 +33,25 @@ TradeWithoutBeams read_trade(const Settings& root, const Settings& s) {
     trade.options.push_back(microwave_option(one, trade.task));
   }
   trade.options.push_back(induction_option(s.table_or_empty("induction"), trade.task));
+  for (const Settings& one : s.tables("beam")) read.beams.push_back(read_beam(one, options));
+  s.finish();
   return read;
 }
 
 }  // namespace
 
 std::string supply_in_words(const RunOptions& options) {
-  const AttitudeExperiment experiment(options);
-  const Settings s = own_table(experiment.settings(), "supply_trade", true);
-  const TradeWithoutBeams read = read_trade(experiment.settings(), s);
+  const SupplyInput read = read_supply(AttitudeExperiment(options).settings(), options);
   std::string words;
   for (const SupplyOption& option : read.trade.options) words += option.name + ", ";
-  for (const Settings& beam : read.beams) words += read_beam(beam, options).name + ", ";
-  s.finish();
+  for (const BeamSettings& beam : read.beams) words += beam.name + ", ";
   return words + "for " + show(read.trade.task.load_W) + " W";
 }
 
 RunResult run_supply(const RunOptions& options, const Console& console) {
   const WallTime wall;
   const AttitudeExperiment experiment(options);
-  const Settings s = own_table(experiment.settings(), "supply_trade", true);
-  TradeWithoutBeams read = read_trade(experiment.settings(), s);
-  SupplyTrade trade = std::move(read.trade);
-  std::vector<BeamSettings> beams;
-  for (const Settings& beam : read.beams) beams.push_back(read_beam(beam, options));
-  s.finish();
+  auto [trade, beams] = read_supply(experiment.settings(), options);
   for (const BeamSettings& beam : beams) {
     trade.options.push_back(beam_option(beam, trade.task, console));
   }
@@ -76,7 +69,7 @@ Verb kind() {
   return {"supply",
           "Comparison of power supplies (battery, cable, microwaves, induction, light): power, "
           "mass, torque",
-          command_that_writes(run_supply),
+          command_that_writes(experiment_options, run_supply),
           {"platform", "environment", "disturbance", "sensors", "supply_trade"},
           "[supply_trade]"};
 }

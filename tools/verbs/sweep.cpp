@@ -14,9 +14,11 @@ struct Options : CommandOptions {
 void add_options(Command& command, Options& options) {
   command.add_traced_experiment(options, Command::Folder::shared);
   command.add("--shard", options.shard,
-              "K/N: compute every Nth design from the Kth; the last shard to end writes the table");
-  command.add("--collect", options.collect,
-              "Only write the table of the existing results, also of incomplete shards");
+              "Compute every Nth design, starting with the Kth (K/N); the last shard that ends "
+              "writes the table");
+  command.add(
+      "--collect", options.collect,
+      "Write the table of the existing results without computing, also of incomplete shards");
 }
 
 struct Shard {

@@ -205,8 +205,8 @@ void add_options(Command& command, CommandOptions& options) {
 void run(const CommandOptions& options, const Program&) {
   const Console console = terminal(options);
   const std::unique_ptr<CheckpointFile> checkpoint = checkpoint_of(options);
-  TorqueMapStage stage;
-  const NodeWatch watch = options.page ? stage.watch() : NodeWatch{};
+  SceneStage stage;
+  const NodeWatch watch = options.page ? add_to(stage) : NodeWatch{};
   TorqueMapRun run = run_torque_map(options, console, watch, checkpoint.get());
   if (options.page) {
     run.result.files.push_back(

@@ -150,13 +150,12 @@ TraceRun run_trace(const RunOptions& options, const Console& console, bool with_
 namespace photorque::verbs::trace {
 namespace {
 
-void run(const CommandOptions& options, const Program&) {
-  const Console console = terminal(options);
+RunResult run(const CommandOptions& options, const Console& console) {
   TraceRun run = run_trace(options, console);
   if (options.page) {
     run.result.files.push_back(light_page(*run.run, run.light, run.result, page_head(options)));
   }
-  write_results(options, console, run.result);
+  return std::move(run.result);
 }
 
 }  // namespace
@@ -164,7 +163,7 @@ void run(const CommandOptions& options, const Program&) {
 Verb kind() {
   return {"trace",
           "Irradiance on every receiver, power balance, radiation force and torque",
-          command_with(traced_page_options, run),
+          command_that_writes(traced_page_options, run),
           {"scene", "material", "source", "receiver", "joint", "attitude", "trace", "published",
            "effect"},
           "[scene] and [[source]]",

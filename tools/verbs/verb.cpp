@@ -144,7 +144,7 @@ void Command::add_common(CommandOptions& common) {
   };
   add("--quiet", common.quiet, "Print only errors");
   add("--json", common.json, "Print the summary as JSON instead of text");
-  add("--verbose", common.verbose, "Print everything: checks, reasons and long tables");
+  add("--verbose", common.verbose, "Also print checks, reasons and long tables");
 }
 
 void Command::add_results(CommandOptions& common) {
@@ -175,7 +175,7 @@ void Command::add_traced_experiment(CommandOptions& common, Folder writes) {
       "standard error (0.01: 1 %)")
       .range = Option::Between<double>(1e-6, 1.0);
   add("--max-time", common.max_time_s,
-      "Maximum time of the trace in seconds; requires --target-error")
+      "Maximum time of each trace in seconds; requires --target-error")
       .mistake = above_zero("seconds");
   add("--allow-outside", common.allow_outside,
       "Follow links and paths of the model that lead out of its folder");
@@ -186,7 +186,8 @@ void Command::add_recordings(std::vector<std::filesystem::path>& recordings) {
 }
 
 void Command::add_page(CommandOptions& common) {
-  add("--page", common.page, "Also write page.html: scene, maps and curves for a browser");
+  add("--page", common.page,
+      "Also write page.html, an interactive page with scene, maps and curves");
 }
 
 void Command::add_checkpoint(CommandOptions& common) {
@@ -208,19 +209,6 @@ void traced_options(Command& command, CommandOptions& options) {
 void traced_page_options(Command& command, CommandOptions& options) {
   command.add_traced_experiment(options);
   command.add_page(options);
-}
-
-std::function<Command()> command_that_writes(RunResult (*run)(const RunOptions&, const Console&)) {
-  return [run] {
-    const auto options = std::make_shared<CommandOptions>();
-    Command command{options};
-    command.add_experiment(*options);
-    command.run = [options, run](const Program&) {
-      const Console console = terminal(*options);
-      write_results(*options, console, run(*options, console));
-    };
-    return command;
-  };
 }
 
 // Removes control characters except line ends and tabs: names may come from hostile files.

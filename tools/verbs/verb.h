@@ -122,9 +122,6 @@ void experiment_options(Command& command, CommandOptions& options);
 void traced_options(Command& command, CommandOptions& options);
 void traced_page_options(Command& command, CommandOptions& options);
 
-// A command with the options of an experiment that writes the result of `run`.
-std::function<Command()> command_that_writes(RunResult (*run)(const RunOptions&, const Console&));
-
 // All verbs listed in tools/CMakeLists.txt, in that order.
 std::vector<Verb> all_verbs();
 
@@ -139,6 +136,21 @@ RunFormats formats_of(const CommandOptions& options);
 // Writes the results and summary.json into the output folder (write_run) and prints its name. With
 // --json, prints the summary.
 void write_results(const CommandOptions& options, const Console& console, const RunResult& result);
+
+// A command that writes the result of `run(options, console)`.
+template <class Options, class Run>
+std::function<Command()> command_that_writes(void (*add_options)(Command&, Options&), Run run) {
+  return [=] {
+    const auto options = std::make_shared<Options>();
+    Command command{options};
+    add_options(command, *options);
+    command.run = [options, run](const Program&) {
+      const Console console = terminal(*options);
+      write_results(*options, console, run(*options, console));
+    };
+    return command;
+  };
+}
 
 // The file of --checkpoint; null without the option.
 std::unique_ptr<CheckpointFile> checkpoint_of(const CommandOptions& options);

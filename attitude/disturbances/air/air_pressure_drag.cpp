@@ -30,7 +30,7 @@ struct AxisDrag final : TorqueLaw<AxisDrag> {
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   if (settings.has(braking.name) && count_as_written(settings, braking.name) > 0) {
-    return make_disturbance<AxisDrag>({vector_parameter(settings, braking_by_axis)});
+    return make_disturbance<AxisDrag>({parameters_of(settings, braking_by_axis)});
   }
   return make_disturbance<AirPressureDrag>(
       {coefficient_of_air(settings, context.environment, braking, &AirCoefficients::form_N_m_s2)});

@@ -206,7 +206,7 @@ Key air_parts_key() {
 
 PlacedParameters coefficient_of_air(const Settings& settings, const Environment& environment,
                                     const ScalarKey& key, double AirCoefficients::*of) {
-  if (!settings.has("part")) return scalar_parameter(settings, key);
+  if (!settings.has("part")) return parameters_of(settings, key);
   const Air air{environment.air_density_kg_m3, environment.air_viscosity_Pa_s};
   const double sum = air_coefficients(read_air_parts(settings.tables("part")), air).*of;
   return fixed_parameter(key.name, {&sum, 1});

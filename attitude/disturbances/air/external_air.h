@@ -26,7 +26,7 @@ enum class AirShape {
   blunt_face,        // flat face normal to the flow: a stiffener, a box
 };
 
-// One or several equal parts. read_air_parts() lists the lengths that a shape needs.
+// One or several equal parts.
 struct AirPart {
   std::string name = {};
   AirShape shape = AirShape::disc;
@@ -79,18 +79,13 @@ struct AirFlow {
 };
 AirFlow air_flow(const AirPart& part, const Air& air, double rate_rad_s);
 
-// Reads the parts of an experiment, for example `[[disturbance.part]]`. Keys: name, shape, count,
-//   disc: radius_m, faces; plate: length_m, area_m2, distance_m, faces;
-//   swept_plate: length_m, inner_m, outer_m, faces; sphere: radius_m, moment_coefficient;
-//   radial_cylinder: radius_m, inner_m, length_m, drag_coefficient;
-//   upright_cylinder: radius_m, distance_m, length_m, drag_coefficient;
-//   blunt_face: area_m2, distance_m, drag_coefficient.
+// Reads the parts of an experiment, whose keys are air_parts_key().
 std::vector<AirPart> read_air_parts(const std::vector<Settings>& parts);
 
 // One row per part: torque, fraction, Reynolds number, transition, and whether the law holds.
 Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_rad_s);
 
-// The key [[disturbance.part]] of read_air_parts().
+// The key [[disturbance.part]].
 Key air_parts_key();
 
 // The coefficient of a disturbance: the stated one or, with parts, the member `of` of their sum in

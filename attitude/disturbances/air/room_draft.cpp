@@ -17,16 +17,15 @@ struct RoomDraft final : TorqueLaw<RoomDraft> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "room_draft",
-          .summary = "a steady draught: a torque constant in the lab",
-          .read = read_law<RoomDraft, Stage::torque, torque_lab>,
-          .screening =
-              {.parametrisations =
-                   {{"a torque that is constant in the laboratory: a steady draught, or a drive",
-                     {EffectKey::vector(torque_lab.name, 5e-6)}}},
-               .needs = Requirement::laboratory,
-               .steady = true},
-          .keys = {torque_lab}};
+  return kind_of_law<RoomDraft, Stage::torque, torque_lab>(
+      {.name = "room_draft",
+       .summary = "a steady draught: a torque constant in the lab",
+       .screening = {
+           .parametrisations =
+               {{"a torque that is constant in the laboratory: a steady draught, or a drive",
+                 {EffectKey::vector(torque_lab.name, 5e-6)}}},
+           .needs = Requirement::laboratory,
+           .steady = true}});
 }
 
 }  // namespace photorque::kinds::room_draft

@@ -111,15 +111,9 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   }
   if (settings.has(about_axis.name)) {
     return make_disturbance<SocketDrag>(
-        {scalar_parameter(settings, about_axis), scalar_parameter(settings, across_axis)});
+        {parameters_of(settings, about_axis), parameters_of(settings, across_axis)});
   }
-  return make_disturbance<IsotropicDrag>({scalar_parameter(settings, coefficient)});
-}
-
-std::vector<Key> socket_keys() {
-  using namespace key;
-  return {radius,    half_angle, recess_half_angle, sheared_share,        gap, rated_load,
-          stiffness, supply,     hole_area,         discharge_coefficient};
+  return make_disturbance<IsotropicDrag>({parameters_of(settings, coefficient)});
 }
 
 }  // namespace
@@ -135,7 +129,10 @@ DisturbanceKind kind() {
                     .needs = Requirement::bearing,
                     .minimum_sum =
                         MinimumSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},
-      .keys = {coefficient, about_axis, across_axis, key::socket.of(socket_keys())}};
+      .keys = {coefficient, about_axis, across_axis,
+               key::socket.of({key::radius, key::half_angle, key::recess_half_angle,
+                               key::sheared_share, key::gap, key::rated_load, key::stiffness,
+                               key::supply, key::hole_area, key::discharge_coefficient})}};
 }
 
 }  // namespace photorque::kinds::bearing_drag

@@ -36,8 +36,8 @@ class DryFriction final : public TorqueLaw<DryFriction> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  Disturbance d = make_disturbance<DryFriction>({scalar_parameter(settings, friction)},
-                                                Stage::torque, {}, settings.get(key::creep_rate));
+  Disturbance d = make_disturbance<DryFriction>({parameters_of(settings, friction)}, Stage::torque,
+                                                {}, settings.get(key::creep_rate));
   d.is_abrupt = true;
   d.is_dry_friction = true;
   return d;

@@ -90,7 +90,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   const bool about_one_axis = context.platform.turns_about_one_axis(),
              winds_up = settings.get(key::winds_up) || about_one_axis;
   Disturbance d = make_disturbance<Tether>(
-      {scalar_parameter(settings, stiffness), parameters_of(settings, pull)}, Stage::torque,
+      {parameters_of(settings, stiffness), parameters_of(settings, pull)}, Stage::torque,
       winds_up ? std::vector<ExtraState>{{.name = twist.name, .is_turned_angle = about_one_axis}}
                : std::vector<ExtraState>{},
       winds_up, about_one_axis);

@@ -19,15 +19,14 @@ struct TurbineTorque final : TorqueLaw<TurbineTorque> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "turbine_torque",
-          .summary = "swirling exhaust of the bearing turns the platform about the vertical",
-          .read = read_law<TurbineTorque, Stage::torque, torque_up>,
-          .screening = {.parametrisations = {{"the bearing's exhaust drives the platform about the "
-                                              "vertical with a constant torque",
-                                              {EffectKey::number(torque_up.name, 5e-6)}}},
-                        .needs = Requirement::air_bearing,
-                        .confusable_kinds = {{"room_draft"}}},
-          .keys = {torque_up}};
+  return kind_of_law<TurbineTorque, Stage::torque, torque_up>(
+      {.name = "turbine_torque",
+       .summary = "swirling exhaust of the bearing turns the platform about the vertical",
+       .screening = {.parametrisations = {{"the bearing's exhaust drives the platform about the "
+                                           "vertical with a constant torque",
+                                           {EffectKey::number(torque_up.name, 5e-6)}}},
+                     .needs = Requirement::air_bearing,
+                     .confusable_kinds = {{"room_draft"}}}});
 }
 
 }  // namespace photorque::kinds::turbine_torque

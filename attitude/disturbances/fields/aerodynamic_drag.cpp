@@ -85,7 +85,7 @@ class AerodynamicDrag final : public TorqueLaw<AerodynamicDrag<Density>> {
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   const TorqueSurface surface = sphere_of(settings, key::table, "the wind");
-  const PlacedParameters scale = scalar_parameter(settings, factor);
+  const PlacedParameters scale = parameters_of(settings, factor);
   const auto drag = [&](std::initializer_list<PlacedParameters> parameters, auto density) {
     return make_disturbance<AerodynamicDrag<decltype(density)>>(parameters, Stage::torque, {},
                                                                 surface, std::move(density));
@@ -94,13 +94,12 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
     if (settings.has(key::density_file)) {
       throw settings.error(key::density_file, "a file beside density_kg_m3", "one of the two");
     }
-    return drag({scale, scalar_parameter(settings, stated_density)}, StatedDensity{});
+    return drag({scale, parameters_of(settings, stated_density)}, StatedDensity{});
   }
   if (!settings.has(key::density_file)) return drag({scale}, MeanDensity{});
   const std::string column = "density_kg_m3";
   return drag({scale}, RecordedDensity{read_time_series(file_of(settings, key::density_file),
-                                                        {column, column, column},
-                                                        TimeSeries::Outside::hold)});
+                                                        {column, column, column})});
 }
 
 }  // namespace

@@ -28,8 +28,7 @@ struct CurrentLoop {
 // Eq. 28: m = Σ N I S [A m²].
 Vec3 dipole_A_m2(std::span<const CurrentLoop> loops);
 
-// Reads tables with current_A, turns (default 1) and either area_m2 (a vector) or corners_m (a
-// polygon with at least three corners).
+// Reads tables with the keys of current_loop_keys().
 std::vector<CurrentLoop> read_current_loops(const std::vector<Settings>& loops);
 std::vector<Key> current_loop_keys();
 

@@ -24,14 +24,13 @@ struct EddyDamping final : TorqueLaw<EddyDamping> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "eddy_damping",
-          .summary = "eddy currents brake a rotation across the ambient field",
-          .read = read_law<EddyDamping, Stage::torque, damping>,
-          .screening = {.parametrisations =
-                            {{"eddy currents brake rotation across the ambient magnetic field",
-                              {EffectKey::not_negative(damping.name, 2e4)}}},
-                        .needs = Requirement::field},
-          .keys = {damping}};
+  return kind_of_law<EddyDamping, Stage::torque, damping>(
+      {.name = "eddy_damping",
+       .summary = "eddy currents brake a rotation across the ambient field",
+       .screening = {
+           .parametrisations = {{"eddy currents brake rotation across the ambient magnetic field",
+                                 {EffectKey::not_negative(damping.name, 2e4)}}},
+           .needs = Requirement::field}});
 }
 
 }  // namespace photorque::kinds::eddy_damping

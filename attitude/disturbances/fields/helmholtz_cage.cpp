@@ -59,7 +59,7 @@ class HelmholtzCage final : public LawOf<HelmholtzCage> {
 TimeSeries read_wanted_field_T(const Settings& settings) {
   if (settings.has(key::field_file)) {
     return read_time_series(file_of(settings, key::field_file),
-                            {"field_x_T", "field_y_T", "field_z_T"}, TimeSeries::Outside::hold);
+                            {"field_x_T", "field_y_T", "field_z_T"});
   }
   if (settings.has(key::orbit)) {
     const Settings s = settings.get(key::orbit);
@@ -81,8 +81,8 @@ TimeSeries read_wanted_field_T(const Settings& settings) {
 }
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<HelmholtzCage>({scalar_parameter(settings, gain_error)},
-                                         Stage::conditions, {}, read_wanted_field_T(settings));
+  return make_disturbance<HelmholtzCage>({parameters_of(settings, gain_error)}, Stage::conditions,
+                                         {}, read_wanted_field_T(settings));
 }
 
 }  // namespace

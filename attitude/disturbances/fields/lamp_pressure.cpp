@@ -29,7 +29,7 @@ struct LampPressure final : TorqueLaw<LampPressure> {
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   const double at_A[] = {settings.number(led_current.name, Range::positive())};
   return make_disturbance<LampPressure>(
-      {vector_parameter(settings, torque_lab),
+      {parameters_of(settings, torque_lab),
        fixed_parameter(led_current.name, at_A, led_current.first)});
 }
 

@@ -19,7 +19,7 @@ struct MagneticDipole final : TorqueLaw<MagneticDipole> {
 };
 
 PlacedParameters dipole(const Settings& settings) {
-  if (!settings.has(loops)) return vector_parameter(settings, moment);
+  if (!settings.has(loops)) return parameters_of(settings, moment);
   const Vec3 sum_A_m2 = dipole_A_m2(read_current_loops(settings.get(loops)));
   return fixed_parameter(moment.name, {sum_A_m2.data(), 3});
 }

@@ -122,7 +122,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   if (settings.has(key::infrared_table))
     infrared = sphere_of(settings, key::infrared_table, "the planet's light");
   return make_disturbance<PlanetLight>(
-      {scalar_parameter(settings, planet_factor)}, Stage::torque, {}, options,
+      {parameters_of(settings, planet_factor)}, Stage::torque, {}, options,
       sphere_of(settings, key::table, "the planet's light"), std::move(infrared));
 }
 

@@ -130,8 +130,8 @@ MonotoneCurve read_curve(const Settings& settings) {
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<PowerBalance>(
-      {scalar_parameter(settings, load), scalar_parameter(settings, array_scale)}, Stage::torque,
-      {}, read_curve(settings));
+      {parameters_of(settings, load), parameters_of(settings, array_scale)}, Stage::torque, {},
+      read_curve(settings));
 }
 
 }  // namespace

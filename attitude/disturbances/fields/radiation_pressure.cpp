@@ -91,7 +91,7 @@ Disturbance read_of_sun(const Settings& settings, const DisturbanceContext& cont
   if (!context.environment.sun) {
     throw settings.error(area_moment, "no [environment.sun]", "where the Sun is");
   }
-  return make_disturbance<SunPressure>({vector_parameter(settings, area_moment)}, Stage::torque, {},
+  return make_disturbance<SunPressure>({parameters_of(settings, area_moment)}, Stage::torque, {},
                                        *context.environment.sun);
 }
 
@@ -111,8 +111,8 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   if (surface.angles() == WrenchTable::Angles::azimuth_elevation) {
     sun_direction_lab = direction_of(settings, key::sun_direction_lab);
   }
-  return make_disturbance<RadiationPressure>({scalar_parameter(settings, factor)}, Stage::torque,
-                                             {}, surface, sun_direction_lab.normalized());
+  return make_disturbance<RadiationPressure>({parameters_of(settings, factor)}, Stage::torque, {},
+                                             surface, sun_direction_lab.normalized());
 }
 
 }  // namespace

@@ -151,15 +151,8 @@ TorqueSurface::Sample TorqueSurface::at(const TableAngles& angles) const {
 Vec3 TorqueSurface::row_at(size_t polar, double around_rad) const {
   const std::vector<double>& nodes = table_.around_rad;
   const auto n = static_cast<std::ptrdiff_t>(nodes.size());
-  std::ptrdiff_t low = 0;
-  if (closed_) {
-    around_rad -= 2.0 * pi * std::floor((around_rad - nodes.front()) / (2.0 * pi));
-    low = std::upper_bound(nodes.begin(), nodes.end(), around_rad) - nodes.begin() - 1;
-  } else {
-    around_rad = nodes.front() + std::remainder(around_rad - nodes.front(), 2.0 * pi);
-    if (around_rad < 2.0 * nodes[0] - nodes[1]) around_rad += 2.0 * pi;
-    low = static_cast<std::ptrdiff_t>(interval(nodes, around_rad, "heading or azimuth"));
-  }
+  bool held = false;
+  const auto low = static_cast<std::ptrdiff_t>(cell_around(around_rad, &held));
   std::array<double, 4> x{};
   std::array<Vec3, 4> f;
   for (int k = 0; k < 4; ++k) {

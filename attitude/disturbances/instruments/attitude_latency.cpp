@@ -16,14 +16,13 @@ struct AttitudeLatency final : LawOf<AttitudeLatency> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "attitude_latency",
-          .summary = "the camera reports a past attitude",
-          .read = read_law<AttitudeLatency, Stage::measurement, latency>,
-          .screening = {.parametrisations = {{"the camera reports a past attitude",
-                                              {EffectKey::not_negative(latency.name, 0.1)}}}},
-          .budget = {.reason_against = "an error of an instrument: no torque"},
-          .instrument = "camera",
-          .keys = {latency}};
+  return kind_of_law<AttitudeLatency, Stage::measurement, latency>(
+      {.name = "attitude_latency",
+       .summary = "the camera reports a past attitude",
+       .screening = {.parametrisations = {{"the camera reports a past attitude",
+                                           {EffectKey::not_negative(latency.name, 0.1)}}}},
+       .budget = {.reason_against = "an error of an instrument: no torque"},
+       .instrument = "camera"});
 }
 
 }  // namespace photorque::kinds::attitude_latency

@@ -19,15 +19,14 @@ struct CameraMisalignment final : LawOf<CameraMisalignment> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "camera_misalignment",
-          .summary = "the camera's target is mounted at a small angle to the body axes",
-          .read = read_law<CameraMisalignment, Stage::measurement, turn>,
-          .screening = {.parametrisations =
-                            {{"the camera's target is mounted at a small angle to the body axes",
-                              {EffectKey::vector(turn.name, 5e-3)}}}},
-          .budget = {.reason_against = "an error of an instrument: no torque"},
-          .instrument = "camera",
-          .keys = {turn}};
+  return kind_of_law<CameraMisalignment, Stage::measurement, turn>(
+      {.name = "camera_misalignment",
+       .summary = "the camera's target is mounted at a small angle to the body axes",
+       .screening = {.parametrisations =
+                         {{"the camera's target is mounted at a small angle to the body axes",
+                           {EffectKey::vector(turn.name, 5e-3)}}}},
+       .budget = {.reason_against = "an error of an instrument: no torque"},
+       .instrument = "camera"});
 }
 
 }  // namespace photorque::kinds::camera_misalignment

@@ -16,17 +16,15 @@ struct GyroBias final : LawOf<GyroBias> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "gyro_bias",
-      .summary = "the gyro reads a constant rate at rest",
-      .read = read_law<GyroBias, Stage::measurement, bias>,
-      .screening = {.parametrisations =
-                        {{"the gyro reads a constant rate at rest, beyond the uncertainty stated",
-                          {EffectKey::vector(bias.name, 5e-3)}}},
-                    .per_recording = true},
-      .budget = {.reason_against = "an error of an instrument: no torque"},
-      .instrument = "gyro",
-      .keys = {bias}};
+  return kind_of_law<GyroBias, Stage::measurement, bias>(
+      {.name = "gyro_bias",
+       .summary = "the gyro reads a constant rate at rest",
+       .screening = {.parametrisations =
+                         {{"the gyro reads a constant rate at rest, beyond the uncertainty stated",
+                           {EffectKey::vector(bias.name, 5e-3)}}},
+                     .per_recording = true},
+       .budget = {.reason_against = "an error of an instrument: no torque"},
+       .instrument = "gyro"});
 }
 
 }  // namespace photorque::kinds::gyro_bias

@@ -18,15 +18,13 @@ struct GyroMisalignment final : LawOf<GyroMisalignment> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "gyro_misalignment",
-      .summary = "the gyro is mounted at a small angle to the body axes",
-      .read = read_law<GyroMisalignment, Stage::measurement, turn>,
-      .screening = {.parametrisations = {{"the gyro is mounted at a small angle to the body axes",
-                                          {EffectKey::vector(turn.name, 0.01)}}}},
-      .budget = {.reason_against = "an error of an instrument: no torque"},
-      .instrument = "gyro",
-      .keys = {turn}};
+  return kind_of_law<GyroMisalignment, Stage::measurement, turn>(
+      {.name = "gyro_misalignment",
+       .summary = "the gyro is mounted at a small angle to the body axes",
+       .screening = {.parametrisations = {{"the gyro is mounted at a small angle to the body axes",
+                                           {EffectKey::vector(turn.name, 0.01)}}}},
+       .budget = {.reason_against = "an error of an instrument: no torque"},
+       .instrument = "gyro"});
 }
 
 }  // namespace photorque::kinds::gyro_misalignment

@@ -22,16 +22,14 @@ struct GyroScale final : LawOf<GyroScale> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "gyro_scale",
-      .summary = "the gyro's axes read too much or too little, in proportion to the rate",
-      .read = read_law<GyroScale, Stage::measurement, scale>,
-      .screening = {.parametrisations =
-                        {{"the gyro's axes read too much or too little in proportion to the rate",
-                          {{scale.name, {0.0, 0.0, 0.0}, 0.02, -largest, largest}}}}},
-      .budget = {.reason_against = "an error of an instrument: no torque"},
-      .instrument = "gyro",
-      .keys = {scale}};
+  return kind_of_law<GyroScale, Stage::measurement, scale>(
+      {.name = "gyro_scale",
+       .summary = "the gyro's axes read too much or too little, in proportion to the rate",
+       .screening = {.parametrisations =
+                         {{"the gyro's axes read too much or too little in proportion to the rate",
+                           {{scale.name, {0.0, 0.0, 0.0}, 0.02, -largest, largest}}}}},
+       .budget = {.reason_against = "an error of an instrument: no torque"},
+       .instrument = "gyro"});
 }
 
 }  // namespace photorque::kinds::gyro_scale

@@ -15,9 +15,8 @@ inline constexpr double lithium_kg_C = 6.94e-3 / faraday_C_mol;
 // Eq. 31: the 0.3 g/Ah of the transport rules, which count all lithium in a cell and round up.
 inline constexpr double lithium_as_published_kg_C = 0.3e-3 / 3600.0;
 
-// One cell on the platform.
+// One cell, anywhere on the platform.
 struct BatteryCell {
-  Vec3 position_body_m = Vec3::Zero();  // of its centre
   // Vector from the mean position of the lithium in the charged cell (anode) to that in the empty
   // cell (cathode), body axes. The paper assumes half the length of the cell. In wound and stacked
   // cells, electrodes alternate about every 0.1 mm, so that this is too large by orders of
@@ -35,23 +34,6 @@ inline Vec3 com_shift_m_C(std::span<const BatteryCell> cells, double platform_ma
   Vec3 moment_m = Vec3::Zero();
   for (const BatteryCell& cell : cells) moment_m += cell.charge_fraction * cell.electrodes_body_m;
   return lithium_per_charge_kg_C / platform_mass_kg * moment_m;
-}
-
-// Consumption of the platform in a part of an experiment.
-struct LoadPhase {
-  double duration_s = 0.0;
-  double power_W = 0.0;
-};
-inline double energy_J(std::span<const LoadPhase> profile) {
-  double sum_J = 0.0;
-  for (const LoadPhase& phase : profile) sum_J += phase.duration_s * phase.power_W;
-  return sum_J;
-}
-
-// Mass [kg] of a battery with this energy. Lithium-ion packs reach 60 to 250 Wh/kg; the parameter
-// is in J/kg.
-inline double battery_mass_kg(double energy_J, double specific_energy_J_kg) {
-  return energy_J / specific_energy_J_kg;
 }
 
 }  // namespace photorque

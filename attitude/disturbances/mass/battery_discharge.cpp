@@ -52,7 +52,7 @@ PlacedParameters shift_from_cells(const Settings& settings, double platform_mass
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   return make_disturbance<BatteryDischarge>(
       {settings.has(key::cell) ? shift_from_cells(settings, context.platform.mass_kg)
-                               : vector_parameter(settings, shift)},
+                               : parameters_of(settings, shift)},
       Stage::mass);
 }
 

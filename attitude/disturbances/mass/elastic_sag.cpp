@@ -1,9 +1,10 @@
 // The structure bends under its weight: T = m C (g_B − g_ref) × g_B, where g_ref is the gravity at
 // zero attitude, at which the platform was balanced (eq. 2–3, corrected and generalised). The
-// compliance C is the displacement of the centre of mass per unit of gravity, body axes; that of
-// dumbbells and tabletops is computed in sag_compliance.h.
+// symmetric compliance C [s²] is the displacement of the centre of mass per unit of gravity, body
+// axes. It is computed for the two structures of the paper: dumbbells and tabletops. Their beams
+// are slender, clamped at the middle, and bend only across their length (Euler–Bernoulli,
+// docs/physics.md).
 #include "attitude/disturbances/kind.h"
-#include "attitude/disturbances/mass/sag_compliance.h"
 
 namespace photorque::kinds::elastic_sag {
 namespace {
@@ -52,20 +53,37 @@ struct MatrixSag final : LawOf<MatrixSag> {
   }
 };
 
+// ∫ (displacement) dm [kg s²] of one clamped beam of mass m with an end mass M, per unit of
+// transverse gravity. Per unit load, the end load displaces the end by l³/3EI and the mean of the
+// beam by l³/8EI. The weight of the beam displaces the end by l³/8EI and its mean by l³/20EI.
+struct Beam {
+  double length_m, end_mass_kg, mass_kg, bending_stiffness_N_m2;
+};
+double sagging_moment_kg_s2(const Beam& beam) {
+  const double l = beam.length_m, M = beam.end_mass_kg, m = beam.mass_kg;
+  return l * l * l * (M * M / 3.0 + M * m / 4.0 + m * m / 20.0) / beam.bending_stiffness_N_m2;
+}
+
+Mat3 across(const Vec3& axis) {
+  const Vec3 a = axis.normalized();
+  return Mat3::Identity() - a * a.transpose();
+}
+
 Mat3 read_compliance_s2(const Settings& settings, double platform_mass_kg) {
   if (settings.has(key::dumbbell)) {
     const Settings s = settings.get(key::dumbbell);
-    const DumbbellArms arms{direction_of(s, key::axis), s.get(key::length), s.get(key::end_mass),
-                            s.get(key::beam_mass), s.get(key::bending_stiffness)};
-    return sag_compliance_s2(arms, platform_mass_kg);
+    return 2.0 *
+           sagging_moment_kg_s2({s.get(key::length), s.get(key::end_mass), s.get(key::beam_mass),
+                                 s.get(key::bending_stiffness)}) /
+           platform_mass_kg * across(direction_of(s, key::axis));
   }
   if (settings.has(key::tabletop)) {
     const Settings s = settings.get(key::tabletop);
-    return sag_compliance_s2(
-        CounterbalanceBeams{s.get(key::tabletop_length), s.get(key::total_mass),
-                            s.get(key::tabletop_bending_stiffness),
-                            static_cast<int>(s.get(key::count))},
-        platform_mass_kg);
+    const auto count = static_cast<double>(s.get(key::count));
+    return count *
+           sagging_moment_kg_s2({s.get(key::tabletop_length), 0.0, s.get(key::total_mass) / count,
+                                 s.get(key::tabletop_bending_stiffness)}) /
+           platform_mass_kg * across(Vec3::UnitZ());
   }
   Mat3 compliance_s2 = settings.matrix3(compliance.name);
   if ((compliance_s2 - compliance_s2.transpose()).norm() > 1e-9 * compliance_s2.norm()) {
@@ -77,7 +95,7 @@ Mat3 read_compliance_s2(const Settings& settings, double platform_mass_kg) {
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   const bool computed = settings.has(key::dumbbell) || settings.has(key::tabletop);
   if (!computed && count_as_written(settings, diagonal.name) == 3) {
-    return make_disturbance<DiagonalSag>({vector_parameter(settings, diagonal)}, Stage::mass);
+    return make_disturbance<DiagonalSag>({parameters_of(settings, diagonal)}, Stage::mass);
   }
   const Mat3 compliance_s2 = read_compliance_s2(settings, context.platform.mass_kg);
   return make_disturbance<MatrixSag>({fixed_parameter(compliance.name, {compliance_s2.data(), 9})},

@@ -78,9 +78,9 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   const double whole_kg_m2 = unit.dot(context.platform.inertia_kg_m2 * unit);
   const bool has_own_rate = settings.has(key::initial_rate);
   const Range part_of_whole{0.0, whole_kg_m2, true, true};
-  const PlacedParameters f = scalar_parameter(settings, frequency),
-                         zeta = scalar_parameter(settings, damping),
-                         J = scalar_parameter(settings, inertia.within(part_of_whole));
+  const PlacedParameters f = parameters_of(settings, frequency),
+                         zeta = parameters_of(settings, damping),
+                         J = parameters_of(settings, inertia.within(part_of_whole));
   const std::vector<ExtraState> states{
       {.name = angle.name,
        .initial = settings.get(key::initial_angle),

@@ -16,13 +16,13 @@ struct GravityGradient final : TorqueLaw<GravityGradient> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "gravity_gradient",
-          .summary = "gravity decreases with height and turns the long axis towards the vertical",
-          .read = read_law<GravityGradient, Stage::torque>,
-          .screening = {
-              .parametrisations = {
-                  {"gravity weakens with height and turns the longest axis towards the vertical",
-                   {}}}}};
+  return kind_of_law<GravityGradient, Stage::torque>(
+      {.name = "gravity_gradient",
+       .summary = "gravity decreases with height and turns the long axis towards the vertical",
+       .screening = {
+           .parametrisations = {
+               {"gravity weakens with height and turns the longest axis towards the vertical",
+                {}}}}});
 }
 
 }  // namespace photorque::kinds::gravity_gradient

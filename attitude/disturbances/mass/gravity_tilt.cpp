@@ -23,15 +23,14 @@ struct GravityTilt final : LawOf<GravityTilt> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "gravity_tilt",
-          .summary = "the camera that defines the vertical is not level",
-          .read = read_law<GravityTilt, Stage::conditions, tilt>,
-          .screening =
-              {.parametrisations =
-                   {{"gravity does not point along the camera's vertical: the camera is not level",
-                     {{tilt.name, {0.0, 0.0}, 5e-3}}}},
-               .needs = Requirement::gravity},
-          .keys = {tilt}};
+  return kind_of_law<GravityTilt, Stage::conditions, tilt>(
+      {.name = "gravity_tilt",
+       .summary = "the camera that defines the vertical is not level",
+       .screening = {
+           .parametrisations =
+               {{"gravity does not point along the camera's vertical: the camera is not level",
+                 {{tilt.name, {0.0, 0.0}, 5e-3}}}},
+           .needs = Requirement::gravity}});
 }
 
 }  // namespace photorque::kinds::gravity_tilt

@@ -14,7 +14,7 @@ struct MassError final : LawOf<MassError> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
-  const PlacedParameters read = scalar_parameter(settings, delta);
+  const PlacedParameters read = parameters_of(settings, delta);
   const double mass_kg = context.platform.mass_kg + read.parameters.front().value;
   if (!(mass_kg > 0.0)) {
     throw settings.error(delta.name, "a mass of " + std::to_string(mass_kg) + " kg with it",

@@ -23,18 +23,16 @@ struct MassShift final : LawOf<MassShift> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "mass_shift",
-      .summary = "the centre of mass jumps at one instant",
-      .read = read_law<MassShift, Stage::mass, start, offset>,
-      .screening =
-          {.parametrisations =
+  return kind_of_law<MassShift, Stage::mass, start, offset>(
+      {.name = "mass_shift",
+       .summary = "the centre of mass jumps at one instant",
+       .screening = {
+           .parametrisations =
                {{"a part of the platform moved at one instant and took the centre of mass with it",
                  {EffectKey::shape(start.name, 0.0, 100.0, 0.0),
                   EffectKey::vector(offset.name, 3e-6)}}},
            .needs = Requirement::gravity,
-           .scan = Scan::instant},
-      .keys = {start, offset}};
+           .scan = Scan::instant}});
 }
 
 }  // namespace photorque::kinds::mass_shift

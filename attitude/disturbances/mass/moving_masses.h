@@ -46,11 +46,8 @@ struct BalanceCommand {
 BalanceCommand balancing_steps(const Vec3& offset_body_m, const std::vector<MovingMass>& masses,
                                double platform_mass_kg);
 
-// Reads moving_mass_kg, lead_m, step_angle_deg (default 1.8), microsteps (default 1) and
-// directions (default: those of eight_masses()).
+// Reads the keys of moving_mass_keys().
 std::vector<MovingMass> read_moving_masses(const Settings& settings);
-
-// The keys of read_moving_masses().
 std::vector<Key> moving_mass_keys();
 
 }  // namespace photorque

@@ -18,15 +18,14 @@ struct StaticUnbalance final : LawOf<StaticUnbalance> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "static_unbalance",
-          .summary = "the centre of mass does not lie in the centre of rotation",
-          .read = read_law<StaticUnbalance, Stage::mass, offset>,
-          .screening =
-              {.parametrisations =
-                   {{"the centre of mass differs from the stated one by more than its uncertainty",
-                     {EffectKey::vector(offset.name, 5e-6)}}},
-               .needs = Requirement::gravity},
-          .keys = {offset}};
+  return kind_of_law<StaticUnbalance, Stage::mass, offset>(
+      {.name = "static_unbalance",
+       .summary = "the centre of mass does not lie in the centre of rotation",
+       .screening = {
+           .parametrisations =
+               {{"the centre of mass differs from the stated one by more than its uncertainty",
+                 {EffectKey::vector(offset.name, 5e-6)}}},
+           .needs = Requirement::gravity}});
 }
 
 }  // namespace photorque::kinds::static_unbalance

@@ -27,20 +27,13 @@ struct AxisGain final : LawOf<AxisGain> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  if (count_as_written(settings, common_gain.name) > 0) {
-    return make_disturbance<AxisGain>({vector_parameter(settings, axis_gain)});
-  }
-  return make_disturbance<CommonGain>({scalar_parameter(settings, common_gain)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {
       .name = "actuator_gain",
       .summary = "actuators give more or less torque or force than commanded",
-      .read = read,
+      .read = read_one_or_three<CommonGain, AxisGain, common_gain>,
       .screening = {.parametrisations = {{"the actuators give more or less torque than commanded",
                                           {EffectKey::number(common_gain.name, 0.2)}},
                                          {"the actuators give more or less torque than commanded, "

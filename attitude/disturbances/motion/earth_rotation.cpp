@@ -24,14 +24,13 @@ struct EarthRotation final : LawOf<EarthRotation> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "earth_rotation",
-      .summary = "the laboratory itself turns once a day",
-      .read = read_law<EarthRotation, Stage::mass>,
-      .screening = {.parametrisations =
-                        {{"the rotation of the Earth acts on the platform and on the gyro", {}}},
-                    .needs = Requirement::turning_laboratory},
-      .sets = "the rotation of the laboratory"};
+  return kind_of_law<EarthRotation, Stage::mass>(
+      {.name = "earth_rotation",
+       .summary = "the laboratory itself turns once a day",
+       .screening = {.parametrisations =
+                         {{"the rotation of the Earth acts on the platform and on the gyro", {}}},
+                     .needs = Requirement::turning_laboratory},
+       .sets = "the rotation of the laboratory"});
 }
 
 }  // namespace photorque::kinds::earth_rotation

@@ -65,8 +65,8 @@ class SpectrumVibration final : public TorqueLaw<SpectrumVibration> {
     Vec3Of<T> sum = Vec3Of<T>::Constant(T(0.0));
     for (const VibrationTone& tone : tones_) {
       for (int k = 0; k < 3; ++k) {
-        sum[k] += tone.amplitude_lab_m_s2[k] *
-                  sinusoid(now.time_s, T(tone.frequency_Hz), T(tone.phase_rad[k]));
+        sum[k] +=
+            tone.amplitude_m_s2 * sinusoid(now.time_s, T(tone.frequency_Hz), T(tone.phase_rad[k]));
       }
     }
     const Vec3Of<T> acceleration_m_s2 = own[factor] * sum;
@@ -106,7 +106,7 @@ Disturbance read_spectrum(const Settings& settings) {
   }
   std::vector<SpectrumPoint> points;
   for (size_t i = 0; i < frequency_Hz.size(); ++i) {
-    points.push_back({frequency_Hz[i], Vec3::Constant(density_m2_s3[i])});
+    points.push_back({frequency_Hz[i], density_m2_s3[i]});
     if (i > 0 && !(frequency_Hz[i] > frequency_Hz[i - 1])) {
       throw s.error(key::frequency, "frequencies out of order", "rising frequencies");
     }
@@ -114,21 +114,21 @@ Disturbance read_spectrum(const Settings& settings) {
   if (points.size() < 2) throw s.error(key::frequency, "one frequency", "at least two");
   const auto tones = static_cast<int>(s.get(key::tones));
   const auto seed = static_cast<uint64_t>(s.get(key::seed));
-  return make_disturbance<SpectrumVibration>({scalar_parameter(settings, factor)}, Stage::torque,
-                                             {}, tones_of_spectrum(points, tones, seed));
+  return make_disturbance<SpectrumVibration>({parameters_of(settings, factor)}, Stage::torque, {},
+                                             tones_of_spectrum(points, tones, seed));
 }
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
   if (settings.has(key::spectrum)) return read_spectrum(settings);
   if (settings.has(key::accelerogram_file)) {
     return make_disturbance<RecordedVibration>(
-        {scalar_parameter(settings, factor)}, Stage::torque, {},
+        {parameters_of(settings, factor)}, Stage::torque, {},
         read_time_series(file_of(settings, key::accelerogram_file),
                          {"acceleration_x_m_s2", "acceleration_y_m_s2", "acceleration_z_m_s2"},
                          TimeSeries::Outside::zero));
   }
-  return make_disturbance<ToneVibration>({vector_parameter(settings, shaking),
-                                          scalar_parameter(settings, frequency),
+  return make_disturbance<ToneVibration>({parameters_of(settings, shaking),
+                                          parameters_of(settings, frequency),
                                           phase_parameter(settings, phase)});
 }
 

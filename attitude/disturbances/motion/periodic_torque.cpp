@@ -27,8 +27,8 @@ struct PeriodicTorque final : TorqueLaw<PeriodicTorque> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<PeriodicTorque>({vector_parameter(settings, amplitude),
-                                           scalar_parameter(settings, frequency),
+  return make_disturbance<PeriodicTorque>({parameters_of(settings, amplitude),
+                                           parameters_of(settings, frequency),
                                            phase_parameter(settings, phase)});
 }
 

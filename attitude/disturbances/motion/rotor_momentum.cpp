@@ -17,13 +17,12 @@ struct RotorMomentum final : TorqueLaw<RotorMomentum> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "rotor_momentum",
-          .summary = "the angular momentum of a spinning part couples the axes",
-          .read = read_law<RotorMomentum, Stage::torque, momentum>,
-          .screening =
-              {.parametrisations = {{"a spinning part on board couples the axes like a gyroscope",
-                                     {EffectKey::vector(momentum.name, 5e-3)}}}},
-          .keys = {momentum}};
+  return kind_of_law<RotorMomentum, Stage::torque, momentum>(
+      {.name = "rotor_momentum",
+       .summary = "the angular momentum of a spinning part couples the axes",
+       .screening = {
+           .parametrisations = {{"a spinning part on board couples the axes like a gyroscope",
+                                 {EffectKey::vector(momentum.name, 5e-3)}}}}});
 }
 
 }  // namespace photorque::kinds::rotor_momentum

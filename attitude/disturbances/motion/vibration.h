@@ -11,25 +11,23 @@
 
 namespace photorque {
 
-// One sinusoid of the floor's acceleration, a sin(2π f t + φ), with a separate phase for each axis.
+// One sinusoid of the floor's acceleration, a sin(2π f t + φ), equal along lab x, y and z but for a
+// separate phase of each.
 struct VibrationTone {
-  double frequency_Hz = 0.0;
-  Vec3 amplitude_lab_m_s2 = Vec3::Zero();
+  double frequency_Hz = 0.0, amplitude_m_s2 = 0.0;
   Vec3 phase_rad = Vec3::Zero();
 };
 
-// One-sided power spectral density of the acceleration at a frequency, along lab x, y and z, in
-// (m/s²)²/Hz.
+// One-sided power spectral density of the acceleration at a frequency, in (m/s²)²/Hz.
 struct SpectrumPoint {
-  double frequency_Hz = 0.0;
-  Vec3 density_m2_s3 = Vec3::Zero();
+  double frequency_Hz = 0.0, density_m2_s3 = 0.0;
 };
 
-// A sum of `tones` sinusoids with the given spectrum, between its first and last frequency. Each
-// band of equal width on a logarithmic scale has one tone at a random frequency, with the power of
-// the band and random phases. The density is linear between its points. Equal seeds give equal
-// signals. NumericalError unless there are at least two points with positive, increasing
-// frequencies and densities ≥ 0. The signal repeats only after times far beyond 1/f.
+// A sum of `tones` sinusoids with the given spectrum, between its first and last frequency: at
+// least two points with positive, increasing frequencies and densities ≥ 0. Each band of equal
+// width on a logarithmic scale has one tone at a random frequency, with the power of the band and
+// random phases. The density is linear between its points. Equal seeds give equal signals. The
+// signal repeats only after times far beyond 1/f.
 std::vector<VibrationTone> tones_of_spectrum(std::span<const SpectrumPoint> spectrum, int tones,
                                              uint64_t seed);
 
@@ -44,9 +42,9 @@ T sinusoid(const T& time_s, const T& frequency_Hz, const T& phase_rad) {
 
 // The parameter `phase` [rad], or phase_deg; 0 if neither is given.
 inline PlacedParameters phase_parameter(const Settings& settings, ScalarKey phase) {
-  return scalar_parameter(settings, settings.has(phase.name)
-                                        ? phase
-                                        : ScalarKey("phase_rad", 0.0, {}, "", phase.first));
+  return parameters_of(settings, settings.has(phase.name)
+                                     ? phase
+                                     : ScalarKey("phase_rad", 0.0, {}, "", phase.first));
 }
 
 }  // namespace photorque

@@ -129,8 +129,8 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
                       .per_body_rate = Vec3::Unit(k)});
   }
   return make_disturbance<WheelControl>(
-      {scalar_parameter(settings, gain_on_angle), scalar_parameter(settings, gain_on_rate),
-       scalar_parameter(settings, viscous), scalar_parameter(settings, dry)},
+      {parameters_of(settings, gain_on_angle), parameters_of(settings, gain_on_rate),
+       parameters_of(settings, viscous), parameters_of(settings, dry)},
       Stage::torque, std::move(states), wheels);
 }
 

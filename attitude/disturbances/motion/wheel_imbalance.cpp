@@ -87,19 +87,19 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   }
   constexpr std::array<double, 3> centre{};
   const PlacedParameters at_m = settings.has(position.name)
-                                    ? vector_parameter(settings, position)
+                                    ? parameters_of(settings, position)
                                     : fixed_parameter(position.name, centre, position.first);
-  const PlacedParameters u_s = scalar_parameter(settings, static_imbalance),
-                         u_d = scalar_parameter(settings, dynamic_imbalance),
-                         phi_s = scalar_parameter(settings, static_phase),
-                         phi_d = scalar_parameter(settings, dynamic_phase);
+  const PlacedParameters u_s = parameters_of(settings, static_imbalance),
+                         u_d = parameters_of(settings, dynamic_imbalance),
+                         phi_s = parameters_of(settings, static_phase),
+                         phi_d = parameters_of(settings, dynamic_phase);
   constexpr double cosine_of_30_deg = 0.8660254037844386;
   const bool is_along_x =
       std::abs(vector_at(axis.parameters, 0).normalized().x()) > cosine_of_30_deg;
   const Vec3 reference = is_along_x ? Vec3::UnitY() : Vec3::UnitX();
   if (settings.has(speed.name)) {
     return make_disturbance<WheelImbalance<true>>(
-        {axis, u_s, u_d, phi_s, phi_d, at_m, scalar_parameter(settings, speed)}, Stage::torque, {},
+        {axis, u_s, u_d, phi_s, phi_d, at_m, parameters_of(settings, speed)}, Stage::torque, {},
         reference);
   }
   return make_disturbance<WheelImbalance<false>>({axis, u_s, u_d, phi_s, phi_d, at_m},

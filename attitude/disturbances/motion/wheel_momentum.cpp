@@ -29,19 +29,12 @@ struct OwnWheels final : TorqueLaw<OwnWheels> {
   }
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  if (count_as_written(settings, common_inertia.name) > 0) {
-    return make_disturbance<OwnWheels>({vector_parameter(settings, axis_inertia)});
-  }
-  return make_disturbance<EqualWheels>({scalar_parameter(settings, common_inertia)});
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "wheel_momentum",
           .summary = "wheels whose speed was measured exchange momentum with the body",
-          .read = read,
+          .read = read_one_or_three<EqualWheels, OwnWheels, common_inertia>,
           .screening =
               {.parametrisations = {{"a wheel on board exchanges angular momentum with the body",
                                      {{.key = common_inertia.name,

@@ -18,15 +18,14 @@ struct BodyForce final : ForceLaw<BodyForce> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "body_force",
-          .summary = "a constant force that turns with a sliding body",
-          .read = read_law<BodyForce, Stage::torque, force_body>,
-          .screening = {.parametrisations = {{"a constant force acts that turns with the platform: "
-                                              "a leaking thruster, a hose, a fan on board",
-                                              {{force_body.name, {0.0, 0.0}, 1e-2}}}},
-                        .needs = Requirement::plane},
-          .budget = {.reason_against = "a force, not a torque"},
-          .keys = {force_body}};
+  return kind_of_law<BodyForce, Stage::torque, force_body>(
+      {.name = "body_force",
+       .summary = "a constant force that turns with a sliding body",
+       .screening = {.parametrisations = {{"a constant force acts that turns with the platform: "
+                                           "a leaking thruster, a hose, a fan on board",
+                                           {{force_body.name, {0.0, 0.0}, 1e-2}}}},
+                     .needs = Requirement::plane},
+       .budget = {.reason_against = "a force, not a torque"}});
 }
 
 }  // namespace photorque::kinds::body_force

@@ -16,15 +16,14 @@ struct SlidingAirDrag final : ForceLaw<SlidingAirDrag> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "sliding_air_drag",
-          .summary = "form drag of a body that slides through air, by the square of the speed",
-          .read = read_law<SlidingAirDrag, Stage::torque, coefficient>,
-          .screening = {.parametrisations = {{"air drags on a sliding body, by the square of its "
-                                              "speed",
-                                              {EffectKey::not_negative(coefficient.name, 1e-2)}}},
-                        .needs = Requirement::plane},
-          .budget = {.reason_against = "a force, not a torque"},
-          .keys = {coefficient}};
+  return kind_of_law<SlidingAirDrag, Stage::torque, coefficient>(
+      {.name = "sliding_air_drag",
+       .summary = "form drag of a body that slides through air, by the square of the speed",
+       .screening = {.parametrisations = {{"air drags on a sliding body, by the square of its "
+                                           "speed",
+                                           {EffectKey::not_negative(coefficient.name, 1e-2)}}},
+                     .needs = Requirement::plane},
+       .budget = {.reason_against = "a force, not a torque"}});
 }
 
 }  // namespace photorque::kinds::sliding_air_drag

@@ -16,15 +16,14 @@ struct SlidingDrag final : ForceLaw<SlidingDrag> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "sliding_drag",
-          .summary = "viscous drag of a sliding body, linear in the speed",
-          .read = read_law<SlidingDrag, Stage::torque, coefficient>,
-          .screening = {.parametrisations = {{"viscous drag on a sliding body, by an air film or a "
-                                              "liquid, in proportion to its speed",
-                                              {EffectKey::not_negative(coefficient.name, 1e-2)}}},
-                        .needs = Requirement::plane},
-          .budget = {.reason_against = "a force, not a torque"},
-          .keys = {coefficient}};
+  return kind_of_law<SlidingDrag, Stage::torque, coefficient>(
+      {.name = "sliding_drag",
+       .summary = "viscous drag of a sliding body, linear in the speed",
+       .screening = {.parametrisations = {{"viscous drag on a sliding body, by an air film or a "
+                                           "liquid, in proportion to its speed",
+                                           {EffectKey::not_negative(coefficient.name, 1e-2)}}},
+                     .needs = Requirement::plane},
+       .budget = {.reason_against = "a force, not a torque"}});
 }
 
 }  // namespace photorque::kinds::sliding_drag

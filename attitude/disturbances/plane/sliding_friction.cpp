@@ -18,7 +18,7 @@ struct SlidingFriction final : ForceLaw<SlidingFriction> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  Disturbance d = make_disturbance<SlidingFriction>({scalar_parameter(settings, coefficient)});
+  Disturbance d = make_disturbance<SlidingFriction>({parameters_of(settings, coefficient)});
   d.is_abrupt = true;
   return d;
 }

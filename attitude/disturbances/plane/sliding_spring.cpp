@@ -20,17 +20,16 @@ struct SlidingSpring final : ForceLaw<SlidingSpring> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "sliding_spring",
-          .summary = "a spring or cable pulls a sliding body back to one place",
-          .read = read_law<SlidingSpring, Stage::torque, stiffness, pull>,
-          .screening = {.parametrisations = {{"a spring or cable pulls a sliding body back to one "
-                                              "place, or a constant force changes along the way",
-                                              {EffectKey::not_negative(stiffness.name, 1e-2),
-                                               {pull.name, {0.0, 0.0}, 1e-2}}}},
-                        .needs = Requirement::plane,
-                        .steady = true},
-          .budget = {.reason_against = "a force, not a torque"},
-          .keys = {stiffness, pull}};
+  return kind_of_law<SlidingSpring, Stage::torque, stiffness, pull>(
+      {.name = "sliding_spring",
+       .summary = "a spring or cable pulls a sliding body back to one place",
+       .screening = {.parametrisations = {{"a spring or cable pulls a sliding body back to one "
+                                           "place, or a constant force changes along the way",
+                                           {EffectKey::not_negative(stiffness.name, 1e-2),
+                                            {pull.name, {0.0, 0.0}, 1e-2}}}},
+                     .needs = Requirement::plane,
+                     .steady = true},
+       .budget = {.reason_against = "a force, not a torque"}});
 }
 
 }  // namespace photorque::kinds::sliding_spring

@@ -18,17 +18,16 @@ struct TableSlope final : ForceLaw<TableSlope> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "table_slope",
-          .summary = "the table is not level: a constant acceleration",
-          .read = read_law<TableSlope, Stage::torque, slope>,
-          .screening = {.parametrisations = {{"a constant acceleration, the slope times gravity: "
-                                              "the table is not level, or another constant force "
-                                              "acts",
-                                              {{slope.name, {0.0, 0.0}, 1e-3}}}},
-                        .needs = Requirement::plane,
-                        .steady = true},
-          .budget = {.reason_against = "a force, not a torque"},
-          .keys = {slope}};
+  return kind_of_law<TableSlope, Stage::torque, slope>(
+      {.name = "table_slope",
+       .summary = "the table is not level: a constant acceleration",
+       .screening = {.parametrisations = {{"a constant acceleration, the slope times gravity: "
+                                           "the table is not level, or another constant force "
+                                           "acts",
+                                           {{slope.name, {0.0, 0.0}, 1e-3}}}},
+                     .needs = Requirement::plane,
+                     .steady = true},
+       .budget = {.reason_against = "a force, not a torque"}});
 }
 
 }  // namespace photorque::kinds::table_slope

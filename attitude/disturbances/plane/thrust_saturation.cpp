@@ -27,17 +27,15 @@ struct ThrustSaturation final : ForceLaw<ThrustSaturation> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "thrust_saturation",
-      .summary =
-          "thrusters give less than commanded, with a fraction that decreases for large commands",
-      .read = read_law<ThrustSaturation, Stage::torque, loss>,
-      .screening = {.parametrisations = {{"the thrusters saturate: large commands give a smaller "
-                                          "fraction of the commanded force",
-                                          {EffectKey::not_negative(loss.name, 1.0)}}},
-                    .needs = Requirement::thrust},
-      .budget = {.reason_against = "a force, not a torque"},
-      .keys = {loss}};
+  return kind_of_law<ThrustSaturation, Stage::torque, loss>(
+      {.name = "thrust_saturation",
+       .summary =
+           "thrusters give less than commanded, with a fraction that decreases for large commands",
+       .screening = {.parametrisations = {{"the thrusters saturate: large commands give a smaller "
+                                           "fraction of the commanded force",
+                                           {EffectKey::not_negative(loss.name, 1.0)}}},
+                     .needs = Requirement::thrust},
+       .budget = {.reason_against = "a force, not a torque"}});
 }
 
 }  // namespace photorque::kinds::thrust_saturation

@@ -26,7 +26,7 @@ Disturbance Candidate::with_strength_alone(size_t p) const {
 
 std::optional<double> braking_power(const Candidate& candidate, AttitudeModel model) {
   const bool slides = model.platform.slides(), pushes = is_force(candidate.effect.how.needs);
-  if (candidate.empirical() || candidate.start.stage == Stage::measurement) return std::nullopt;
+  if (candidate.is_empirical || candidate.start.stage == Stage::measurement) return std::nullopt;
   if (pushes ? !slides : !model.platform.turns_about_one_axis()) return std::nullopt;
   model.disturbances = {candidate.at_expected_size()};
   if (slides) model.disturbances.push_back(translation());
@@ -49,7 +49,7 @@ std::optional<double> braking_power(const Candidate& candidate, AttitudeModel mo
 }
 
 bool is_restoring(const Candidate& candidate, AttitudeModel model) {
-  if (candidate.empirical() || candidate.start.stage == Stage::measurement ||
+  if (candidate.is_empirical || candidate.start.stage == Stage::measurement ||
       !model.platform.turns_about_one_axis() || is_force(candidate.effect.how.needs)) {
     return false;
   }

@@ -1,52 +1,47 @@
 // The candidates that recordings can reveal.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "attitude/estimation/axis_readings.h"
 #include "attitude/estimation/swing.h"
-#include "diagnosis/attitude/effects/machine_scale.h"
+#include "attitude/propagation/run.h"
+#include "diagnosis/attitude/effects/trial.h"
 
 namespace photorque {
 namespace {
 
+// Sets the traits that follow from the parameters.
+void set_linearity(Candidate& c) {
+  c.parameters = c.start.parameters.size();
+  c.is_linear = c.parameters > 0 && std::ranges::none_of(c.searched, std::identity());
+  c.has_strength = !std::ranges::all_of(c.searched, std::identity());
+}
+
 Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) {
   Candidate c;
-  c.label = effect.kind;
+  c.name = effect.kind;
   c.effect = effect;
   c.start = disturbance_of(effect, context);
   for (const Parameter& parameter : c.start.parameters) {
     // Details of a law without a key in the catalogue (the rate below which a contact creeps) are
     // fixed.
-    const auto key = std::find_if(effect.keys.begin(), effect.keys.end(),
-                                  [&](const EffectKey& k) { return k.key == parameter.key; });
-    c.scale.push_back(key == effect.keys.end() ? 0.0 : key->scale);
-    c.lowest.push_back(key == effect.keys.end() ? -1e308 : key->lowest);
-    c.highest.push_back(key == effect.keys.end() ? 1e308 : key->highest);
-    c.searched.push_back(key != effect.keys.end() && key->searched);
+    const auto key = std::ranges::find(effect.keys, parameter.key, &EffectKey::key);
+    const bool is_known = key != effect.keys.end();
+    c.scale.push_back(is_known ? key->scale : 0.0);
+    c.lowest.push_back(is_known ? key->lowest : -1e308);
+    c.highest.push_back(is_known ? key->highest : 1e308);
+    c.searched.push_back(is_known && key->searched);
   }
+  set_linearity(c);
+  c.is_fast = effect.how.fast;
+  c.is_limit_of_swinging = effect.how.inertia_change_kg_m2 != nullptr;
+  c.is_of_instrument = c.start.stage == Stage::measurement;
+  // Several appendages with different frequencies and axes are distinguishable.
+  c.swings = effect.how.scan == Scan::mode;
+  if (c.swings) c.most = 2;
   return c;
 }
-
-}  // namespace
-
-Candidate candidate_of(const EmpiricalLaw& law) {
-  Candidate c;
-  c.label = "unknown in " + law.variable + ": " + law.description;
-  c.variable = law.variable;
-  c.law = law;
-  c.start = law.disturbance;
-  for (size_t p = 0; p < law.disturbance.parameters.size(); ++p) {
-    // Exponents and time constants are searched.
-    const bool own = p < law.shape.first_coefficient();
-    c.scale.push_back(own ? law.own_scale : law.scale);
-    c.lowest.push_back(own ? law.lowest : -1e308);
-    c.highest.push_back(own ? law.highest : 1e308);
-    c.searched.push_back(own);
-  }
-  return c;
-}
-
-namespace {
 
 CoveredMotion covered_by(const std::vector<Observation>& runs) {
   CoveredMotion covered;
@@ -387,6 +382,25 @@ void omit_steady_while_slowing(const Platform& platform, const std::vector<Obser
 }
 
 }  // namespace
+
+Candidate candidate_of(const EmpiricalLaw& law) {
+  Candidate c;
+  c.name = "unknown in " + law.variable + ": " + law.description;
+  c.is_empirical = true;
+  c.variable = law.variable;
+  c.law = law;
+  c.start = law.disturbance;
+  for (size_t p = 0; p < law.disturbance.parameters.size(); ++p) {
+    // Exponents and time constants are searched.
+    const bool own = p < law.shape.first_coefficient();
+    c.scale.push_back(own ? law.own_scale : law.scale);
+    c.lowest.push_back(own ? law.lowest : -1e308);
+    c.highest.push_back(own ? law.highest : 1e308);
+    c.searched.push_back(own);
+  }
+  set_linearity(c);
+  return c;
+}
 
 Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
                           const Thresholds& limits) {

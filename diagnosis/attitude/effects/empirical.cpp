@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/effects/empirical.h"
+#include "diagnosis/attitude/effects/trial.h"
 
 namespace photorque {
 namespace {

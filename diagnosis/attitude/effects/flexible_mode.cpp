@@ -1,5 +1,4 @@
-#include "diagnosis/attitude/effects/flexible_mode.h"
-
+// Flexible appendages: screening, and starts for their frequency and axis.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -10,7 +9,6 @@
 #include "diagnosis/attitude/effects/scan.h"
 
 namespace photorque {
-
 namespace {
 
 // State of oscillators about the three body axes, relative to the body.
@@ -106,22 +104,6 @@ Score score_of(const Eigen::MatrixXd& sums) {
   return solve_score(sums.topLeftCorner(count, count), sums.col(count).head(count),
                      sums.diagonal().head(count));
 }
-
-}  // namespace
-
-Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
-                       const std::vector<Vec3>& axes, double frequency_Hz, double damping) {
-  const auto count = static_cast<Eigen::Index>(axes.size());
-  std::vector<Vec3> answer_body;
-  for (const Vec3& axis : axes) answer_body.push_back(-inertia_kg_m2.inverse() * axis);
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(count + 1, count + 1);
-  for (const PropagatedRun& run : runs) {
-    sums += sums_of(run, swings(run, frequency_Hz, damping), axes, answer_body, frequency_Hz);
-  }
-  return score_of(sums);
-}
-
-namespace {
 
 // Appendages are mostly excited by short pulses (the start or end of a command), so the width of a
 // resonance is given by its damping. This damping makes it wide enough for the frequency grid.
@@ -326,6 +308,18 @@ FreeSwing best_free_swing(const std::vector<PropagatedRun>& runs,
 }
 
 }  // namespace
+
+Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
+                       const std::vector<Vec3>& axes, double frequency_Hz, double damping) {
+  const auto count = static_cast<Eigen::Index>(axes.size());
+  std::vector<Vec3> answer_body;
+  for (const Vec3& axis : axes) answer_body.push_back(-inertia_kg_m2.inverse() * axis);
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(count + 1, count + 1);
+  for (const PropagatedRun& run : runs) {
+    sums += sums_of(run, swings(run, frequency_Hz, damping), axes, answer_body, frequency_Hz);
+  }
+  return score_of(sums);
+}
 
 std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
                                         const std::vector<Observation>& runs,

@@ -1,20 +1,14 @@
-#include "diagnosis/attitude/effects/judge.h"
-
+// Evidence of a fitted model, and physical objections to it.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "core/numerics/linear.h"
+#include "diagnosis/attitude/effects/trial.h"
 #include "inference/estimator/evidence.h"
 
 namespace photorque {
-
-bool changes_inertia(const Disturbance& d) {
-  const DisturbanceKind* kind = find_kind(d.kind);
-  return kind != nullptr && kind->screening.inertia_change_kg_m2 != nullptr;
-}
-
 namespace {
 
 // Largest relative change of a moment of inertia within three standard deviations of the stated
@@ -76,7 +70,7 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
       const double sigma = std::sqrt(std::max(0.0, covariance(at, at)));
       const double beyond = limits.bound_sigma * sigma;
       if (value < c.lowest[p] - beyond || value > c.highest[p] + beyond) {
-        return c.label + " would have the wrong sign";
+        return c.name + " would have the wrong sign";
       }
     }
   }
@@ -124,7 +118,7 @@ Significance significance(const Trial& trial, const Candidates& all, size_t whic
   std::vector<double> values;
   for (const auto& [disturbance, p, at, value] : fitted_numbers(trial, which)) {
     // All coefficients of an empirical law together are its size; its searched shape is not.
-    const bool is_size = c.empirical() ? !c.searched[p] : c.start.parameters[p].key == size;
+    const bool is_size = c.is_empirical ? !c.searched[p] : c.start.parameters[p].key == size;
     if (!is_size) continue;
     where.push_back(at);
     values.push_back(value);
@@ -139,6 +133,11 @@ Significance significance(const Trial& trial, const Candidates& all, size_t whic
 
 }  // namespace
 
+bool changes_inertia(const Disturbance& d) {
+  const DisturbanceKind* kind = find_kind(d.kind);
+  return kind != nullptr && kind->screening.inertia_change_kg_m2 != nullptr;
+}
+
 double log_evidence(const Trial& trial, const Candidates& all) {
   const Fit& fit = trial.fit;
   const Thresholds::Evidence& limits = all.limits.evidence;
@@ -149,7 +148,7 @@ double log_evidence(const Trial& trial, const Candidates& all) {
   inference::Strengths strengths;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const Candidate& c = all[trial.candidates[i]];
-    result += c.empirical() ? limits.log_prior_empirical : limits.log_prior_effect;
+    result += c.is_empirical ? limits.log_prior_empirical : limits.log_prior_effect;
     for (const auto& [disturbance, p, at, value] : fitted_numbers(trial, i)) {
       if (!c.searched[p]) {
         strengths.at.push_back(at);

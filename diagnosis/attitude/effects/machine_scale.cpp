@@ -1,11 +1,12 @@
-#include "diagnosis/attitude/effects/machine_scale.h"
-
+// Expected sizes of the candidates on machines other than platforms on air bearings.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "attitude/estimation/axis_readings.h"
 #include "attitude/estimation/swing.h"
+#include "attitude/propagation/run.h"
+#include "diagnosis/attitude/effects/trial.h"
 
 namespace photorque {
 namespace {

@@ -10,8 +10,6 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/linear.h"
-#include "diagnosis/attitude/effects/flexible_mode.h"
-#include "diagnosis/attitude/effects/screen.h"
 
 namespace photorque {
 
@@ -73,7 +71,7 @@ void add_power(const Prediction& prediction, const Observation& seen, ResidualSp
 const std::string& strength_of(const Candidate& c) {
   const std::vector<EffectKey>& keys = c.effect.keys;
   const auto found = std::ranges::find_if(keys, [](const EffectKey& k) { return !k.searched; });
-  if (found == keys.end()) throw NumericalError(c.label + " has no strength");
+  if (found == keys.end()) throw NumericalError(c.name + " has no strength");
   return found->key;
 }
 

@@ -1,5 +1,6 @@
-// Starts for effects with nonlinear parameters (a frequency, an instant, an axis), which a fit
-// finds only from a nearby start.
+// Forecasts of the gain of effects that a model lacks (inference/estimator/score.h), and starts for
+// effects with nonlinear parameters (a frequency, an instant, an axis), which a fit finds only from
+// a nearby start.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +9,25 @@
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/estimation/fit.h"
+#include "attitude/observation/prediction.h"
 #include "diagnosis/attitude/effects/trial.h"
+#include "inference/estimator/score.h"
 
 namespace photorque {
+
+using inference::Score;
+using inference::solve_score;
+
+// A group of parameters that are added together.
+struct ScoreGroup {
+  std::vector<Disturbance> disturbances;
+  std::vector<int> parameters = {};  // indices in each disturbance; empty: all
+};
+
+// Scores all groups in one pass, or in several to limit memory. A group that cannot be propagated
+// has gain 0.
+std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
+                         const std::vector<ScoreGroup>& groups);
 
 // At most `most` frequencies [Hz] at which the residual of a fit has power, strongest first, above
 // those of the platform's motion.
@@ -63,5 +80,29 @@ inline std::vector<int> indices_of(const Disturbance& d, std::string_view key, s
   for (size_t k = 0; k < components; ++k) all.push_back(first + static_cast<int>(k));
   return all;
 }
+
+// One run propagated along a fit.
+struct PropagatedRun {
+  const Observation& seen;
+  const Prediction& propagated;  // with residuals
+};
+
+// The score of light appendages about these axes [body, unit vectors], one strength J [kg m²] each,
+// all of one frequency and damping (fraction of critical), without a propagation for each. The
+// motion of each appendage under the fitted motion is exact. The platform is assumed to be free
+// within a swing: δω = −J I⁻¹ a φ'. Instead of a projection of the fitted parameters, parts slower
+// than a swing are removed from readings and responses.
+Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
+                       const std::vector<Vec3>& axes, double frequency_Hz, double damping);
+
+// The best flexible modes to add to `fit`: some that the motion drives, and one that was deflected
+// at the start of a run if it explains more. `start` is the disturbance with its expected strength;
+// `slow_runs` are averages of the runs, sufficient for slow motion; `lines_Hz` are the lines of the
+// residual.
+std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
+                                        const std::vector<Observation>& runs,
+                                        const std::vector<Observation>& slow_runs,
+                                        const std::vector<double>& lines_Hz,
+                                        const Thresholds::Scoring& limits);
 
 }  // namespace photorque

@@ -1,8 +1,8 @@
-#include "diagnosis/attitude/effects/screen.h"
-
+// Score tests of disturbances that a model lacks, and the linear problem of their strengths.
 #include <cmath>
 
 #include "attitude/estimation/fit.h"
+#include "diagnosis/attitude/effects/scan.h"
 
 namespace photorque {
 namespace {
@@ -47,6 +47,35 @@ GroupsAtFit project(const Fit& at, const std::vector<Observation>& runs,
   return result;
 }
 
+// The strengths of a candidate as a group; adds their columns in the sums to `columns`.
+inference::StrengthGroup group_of(const Candidate& c, size_t term,
+                                  const std::vector<SharedParameter>& numbers,
+                                  std::vector<Eigen::Index>& columns) {
+  inference::StrengthGroup group;
+  group.term = term;
+  group.name = c.name;
+  group.is_empirical = c.is_empirical;
+  group.first = static_cast<Eigen::Index>(columns.size());
+  for (const auto& [disturbance, p, column, value] : numbers) {
+    if (!c.is_strength(p)) continue;
+    columns.push_back(column);
+    group.value.push_back(value);
+    group.scale.push_back(c.scale[p]);
+    group.lowest.push_back(c.lowest[p]);
+    group.highest.push_back(c.highest[p]);
+  }
+  return group;
+}
+
+// Sets the strengths to zero, including those found by a scan, because the derivatives are
+// evaluated at zero strength.
+Disturbance without_strength(const Candidate& c, Disturbance d) {
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (c.is_strength(p)) d.parameters[p].value = 0.0;
+  }
+  return d;
+}
+
 }  // namespace
 
 std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
@@ -72,63 +101,8 @@ std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
   return scores;
 }
 
-namespace {
-
-// The strengths of a candidate as a group; adds their columns in the sums to `columns`.
-inference::StrengthGroup group_of(const Candidate& c, size_t term,
-                                  const std::vector<SharedParameter>& numbers,
-                                  std::vector<Eigen::Index>& columns) {
-  inference::StrengthGroup group;
-  group.term = term;
-  group.name = c.label;
-  group.is_empirical = c.empirical();
-  group.first = static_cast<Eigen::Index>(columns.size());
-  for (const auto& [disturbance, p, column, value] : numbers) {
-    if (!c.is_strength(p)) continue;
-    columns.push_back(column);
-    group.value.push_back(value);
-    group.scale.push_back(c.scale[p]);
-    group.lowest.push_back(c.lowest[p]);
-    group.highest.push_back(c.highest[p]);
-  }
-  return group;
-}
-
-// Sets the strengths to zero, including those found by a scan, because the derivatives are
-// evaluated at zero strength.
-Disturbance without_strength(const Candidate& c, Disturbance d) {
-  for (size_t p = 0; p < c.scale.size(); ++p) {
-    if (c.is_strength(p)) d.parameters[p].value = 0.0;
-  }
-  return d;
-}
-
-// Normal equations of some columns, with all other columns projected out.
-inference::LinearProblem projected_on(const inference::SumsOfRuns& of_runs,
-                                      const std::vector<Eigen::Index>& columns) {
-  const inference::NormalSums sums = of_runs.of_shared();
-  std::vector<bool> is_wanted(static_cast<size_t>(sums.gradient.size()), false);
-  for (const Eigen::Index c : columns) is_wanted[static_cast<size_t>(c)] = true;
-  std::vector<Eigen::Index> order;
-  for (Eigen::Index i = 0; i < sums.gradient.size(); ++i) {
-    if (!is_wanted[static_cast<size_t>(i)]) order.push_back(i);
-  }
-  const auto fitted = static_cast<Eigen::Index>(order.size());
-  order.insert(order.end(), columns.begin(), columns.end());
-  const inference::NormalSums sorted{sums.matrix(order, order), sums.gradient(order), sums.chi2,
-                                     sums.samples};
-  inference::Projected all = inference::project_out(sorted, fitted);
-  return {std::move(all.information),
-          std::move(all.gradient),
-          of_runs.matrix.shared().diagonal()(columns),
-          {}};
-}
-
-}  // namespace
-
-inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
-                                        const std::vector<inference::Term<Start>>& terms,
-                                        const std::vector<Observation>& runs) {
+inference::LinearProblem Candidates::linear_problem(const Trial& at, const Terms& terms,
+                                                    const Runs& runs) const {
   Hypothesis h = at.fit.best;
   std::vector<Free> extra;
   std::vector<inference::StrengthGroup> groups;
@@ -136,8 +110,8 @@ inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
   // Columns of the shared sums: those of h.free in their order, then the extra ones.
   auto next = static_cast<Eigen::Index>(h.shared().size());
   for (size_t t = 0; t < terms.size(); ++t) {
-    const Candidate& c = all[terms[t].candidate];
-    if (c.effect.how.fast || !c.has_linear_strength()) continue;
+    const Candidate& c = list[terms[t].candidate];
+    if (c.is_fast || !c.has_strength) continue;
     std::vector<SharedParameter> numbers;
     if (t < at.candidates.size()) {
       numbers = fitted_numbers(at, t);
@@ -153,9 +127,9 @@ inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
   }
   const inference::SumsOfRuns sums = sums_at(h, runs, extra);
   if (!std::isfinite(sums.chi2)) return {};
-  inference::LinearProblem problem = projected_on(sums, columns);
-  problem.groups = std::move(groups);
-  return problem;
+  inference::Projected all = inference::project_onto(sums.of_shared(), columns);
+  return {std::move(all.information), std::move(all.gradient),
+          sums.matrix.shared().diagonal()(columns), std::move(groups)};
 }
 
 }  // namespace photorque

@@ -6,45 +6,8 @@
 
 #include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
-#include "diagnosis/attitude/effects/judge.h"
 
 namespace photorque {
-
-namespace {
-
-EffectKey scaled(EffectKey key, double inertia_kg_m2) {
-  if (!key.times_inertia) return key;
-  for (double& start : key.start) start *= inertia_kg_m2;
-  key.scale *= inertia_kg_m2;
-  return key;
-}
-
-}  // namespace
-
-std::vector<Effect> catalogue(const DisturbanceContext& context) {
-  const Platform& platform = context.platform;
-  const double inertia_kg_m2 = platform.inertia_kg_m2.trace() / 3.0;
-  std::vector<Effect> all;
-  for (const DisturbanceKind& kind : disturbance_kinds()) {
-    const auto own = kind.screening.of_experiment;
-    const std::vector<Parametrisation> ways =
-        own != nullptr ? own(context) : kind.screening.parametrisations;
-    for (const Parametrisation& p : ways) {
-      if (p.of_free_bodies && platform.has_bearing()) continue;
-      Effect effect{kind.name, {}, p.explanation, kind.screening, p.of_free_bodies};
-      for (const EffectKey& key : p.keys) effect.keys.push_back(scaled(key, inertia_kg_m2));
-      all.push_back(std::move(effect));
-    }
-  }
-  return all;
-}
-
-Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& context) {
-  std::vector<std::pair<std::string, std::vector<double>>> values;
-  for (const EffectKey& key : effect.keys) values.emplace_back(key.key, key.start);
-  return make_disturbance_of(effect.kind, values, context);
-}
-
 namespace {
 
 // Resets the parameters of the nominal disturbances, which come first, to their stated values, and
@@ -131,58 +94,6 @@ Hypothesis nominal_part(const Trial& trial) {
   for (RunStart& run : h.runs) run.initial.extra.resize(states);
   return h;
 }
-
-}  // namespace
-
-Trial nominal_trial(const Fit& nominal, const Candidates& all) {
-  Trial trial;
-  trial.fit = nominal;
-  trial.log_evidence = log_evidence(trial, all);
-  return trial;
-}
-
-Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Start& start,
-             const std::vector<Observation>& runs, const inference::Options& options) {
-  Trial trial;
-  trial.candidates = parent.candidates;
-  trial.disturbances = parent.disturbances;
-  Hypothesis h = parent.fit.best;
-  inference::Options how = options;
-  // The scan of a mode that explains most of the residual starts near the solution.
-  const bool is_near =
-      all[candidate].effect.how.scan == Scan::mode && start.gain > 0.5 * parent.fit.chi2;
-  if (is_near) {
-    how.max_iterations = std::max(how.max_iterations, all.limits.fitting.leader_iterations);
-  } else if (parent.fit.chi2_per_sample() > all.limits.diverged_chi2_per_sample) {
-    // The parameters of a diverged fit are useless as a start.
-    reset_to_stated(h.model.disturbances.size() - parent.candidates.size(), runs, h);
-    how.windows = all.limits.fitting.diverged_windows;
-  }
-  trial.candidates.push_back(candidate);
-  trial.disturbances.push_back(add_free(h, all[candidate], start.disturbance, all.limits));
-  if (is_near) {
-    // The initial deflection of each run is fitted first. Without it the readings do not determine
-    // the frequency.
-    Hypothesis as_scanned = h;
-    std::erase_if(as_scanned.free, [](const Free& f) { return !f.per_run; });
-    h.runs = fit(as_scanned, runs, {options}).best.runs;
-  }
-  trial.fit = fit_also_from_stated(h, h.model.disturbances.size() - trial.candidates.size(), runs,
-                                   how, all.limits);
-  judge(trial, all);
-  return trial;
-}
-
-std::vector<inference::Term<Start>> terms_of(const Trial& trial) {
-  std::vector<inference::Term<Start>> terms;
-  for (size_t i = 0; i < trial.candidates.size(); ++i) {
-    terms.push_back(
-        {trial.candidates[i], {trial.fit.best.model.disturbances[trial.disturbances[i]]}});
-  }
-  return terms;
-}
-
-namespace {
 
 inference::Members<Start> without_forecast(inference::Members<Start> members) {
   for (inference::Member<Start>& member : members) member.strengths.resize(0);
@@ -272,18 +183,95 @@ Trial assembled(const Trial& from, const Candidates& all, const inference::Membe
 
 }  // namespace
 
-Trial assemble(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
-               const std::vector<Observation>& runs, const inference::Options& options) {
+std::vector<Effect> catalogue(const DisturbanceContext& context) {
+  const Platform& platform = context.platform;
+  const double inertia_kg_m2 = platform.inertia_kg_m2.trace() / 3.0;
+  std::vector<Effect> all;
+  for (const DisturbanceKind& kind : disturbance_kinds()) {
+    const auto own = kind.screening.of_experiment;
+    const std::vector<Parametrisation> ways =
+        own != nullptr ? own(context) : kind.screening.parametrisations;
+    for (const Parametrisation& p : ways) {
+      if (p.of_free_bodies && platform.has_bearing()) continue;
+      Effect effect{kind.name, {}, p.explanation, kind.screening, p.of_free_bodies};
+      effect.keys = p.keys;
+      for (EffectKey& key : effect.keys) {
+        if (!key.times_inertia) continue;
+        for (double& start : key.start) start *= inertia_kg_m2;
+        key.scale *= inertia_kg_m2;
+      }
+      all.push_back(std::move(effect));
+    }
+  }
+  return all;
+}
+
+Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& context) {
+  std::vector<std::pair<std::string, std::vector<double>>> values;
+  for (const EffectKey& key : effect.keys) values.emplace_back(key.key, key.start);
+  return make_disturbance_of(effect.kind, values, context);
+}
+
+Trial nominal_trial(const Fit& nominal, const Candidates& all) {
+  Trial trial;
+  trial.fit = nominal;
+  trial.log_evidence = log_evidence(trial, all);
+  return trial;
+}
+
+Trial Candidates::extend(const Trial& parent, size_t candidate, const Start& start,
+                         const Runs& runs, const Effort& effort) const {
+  Trial trial;
+  trial.candidates = parent.candidates;
+  trial.disturbances = parent.disturbances;
+  Hypothesis h = parent.fit.best;
+  Effort how = effort;
+  // The scan of a mode that explains most of the residual starts near the solution.
+  const bool is_near =
+      list[candidate].effect.how.scan == Scan::mode && start.gain > 0.5 * parent.fit.chi2;
+  if (is_near) {
+    how.max_iterations = std::max(how.max_iterations, limits.fitting.leader_iterations);
+  } else if (parent.fit.chi2_per_sample() > limits.diverged_chi2_per_sample) {
+    // The parameters of a diverged fit are useless as a start.
+    reset_to_stated(h.model.disturbances.size() - parent.candidates.size(), runs, h);
+    how.windows = limits.fitting.diverged_windows;
+  }
+  trial.candidates.push_back(candidate);
+  trial.disturbances.push_back(add_free(h, list[candidate], start.disturbance, limits));
+  if (is_near) {
+    // The initial deflection of each run is fitted first. Without it the readings do not determine
+    // the frequency.
+    Hypothesis as_scanned = h;
+    std::erase_if(as_scanned.free, [](const Free& f) { return !f.per_run; });
+    h.runs = fit(as_scanned, runs, {effort}).best.runs;
+  }
+  trial.fit = fit_also_from_stated(h, h.model.disturbances.size() - trial.candidates.size(), runs,
+                                   how, limits);
+  judge(trial, *this);
+  return trial;
+}
+
+Candidates::Terms Candidates::terms_of(const Trial& trial) const {
+  Terms terms;
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    terms.push_back(
+        {trial.candidates[i], {trial.fit.best.model.disturbances[trial.disturbances[i]]}});
+  }
+  return terms;
+}
+
+Trial Candidates::assemble(const Trial& from, const inference::Members<Start>& members,
+                           const Runs& runs, const Effort& effort) const {
   // If no candidate is removed, the first step of a fit from the trial equals the forecast and also
   // moves the initial conditions of each run. Otherwise the forecast is the nearest start.
-  Trial trial = assembled(from, all, adds_to(from, members) ? without_forecast(members) : members,
-                          runs, with_start_limit(options, from, all.limits));
+  Trial trial = assembled(from, *this, adds_to(from, members) ? without_forecast(members) : members,
+                          runs, with_start_limit(effort, from, limits));
   if (!std::isfinite(trial.fit.chi2)) {
-    inference::Options growing = options;
-    growing.windows = growing_windows(all.limits, runs);
-    trial = assembled(from, all, without_forecast(members), runs, growing);
+    Effort growing = effort;
+    growing.windows = growing_windows(limits, runs);
+    trial = assembled(from, *this, without_forecast(members), runs, growing);
   }
-  judge(trial, all);
+  judge(trial, *this);
   return trial;
 }
 
@@ -331,19 +319,19 @@ Trial within_physics(const Trial& trial, const Candidates& all,
   return leads_back({1.0}) || leads_back(all.limits.fitting.diverged_windows) ? result : trial;
 }
 
-Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
-            const std::vector<RunStart>& starts, const inference::Options& options) {
+Trial Candidates::refit(const Trial& trial, const Runs& runs, const std::vector<RunStart>& begins,
+                        const Effort& effort) const {
   Trial result = trial;
   Hypothesis h = trial.fit.best;
-  h.runs = starts;
+  h.runs = begins;
   adapt_to_runs(h, runs);
-  result.fit = fit(h, runs, {options});
-  judge(result, all);
+  result.fit = fit(h, runs, {effort});
+  judge(result, *this);
   return result;
 }
 
-Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
-                 const std::vector<Observation>& runs, const inference::Options& options) {
+Trial Candidates::refit_near(const Trial& trial, const Trial& other, const Runs& runs,
+                             const Effort& effort) const {
   Trial from = trial;
   std::vector<Disturbance>& to = from.fit.best.model.disturbances;
   const std::vector<Disturbance>& source = other.fit.best.model.disturbances;
@@ -354,14 +342,14 @@ Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
     if (same[i] == other.candidates.size()) continue;
     to[trial.disturbances[i]].parameters = source[other.disturbances[same[i]]].parameters;
   }
-  std::vector<RunStart> starts = other.fit.best.runs;
-  for (size_t run = 0; run < starts.size(); ++run) {
-    std::vector<double>& extra = starts[run].initial.extra;
+  std::vector<RunStart> begins = other.fit.best.runs;
+  for (size_t run = 0; run < begins.size(); ++run) {
+    std::vector<double>& extra = begins[run].initial.extra;
     const std::vector<double>& own = from.fit.best.runs[run].initial.extra;
     if (extra.size() != own.size()) extra = own;
   }
   // A fit from a start that is far worse than the trial would only return to it.
-  return refit(from, all, runs, starts, with_start_limit(options, trial, all.limits));
+  return refit(from, runs, begins, with_start_limit(effort, trial, limits));
 }
 
 }  // namespace photorque

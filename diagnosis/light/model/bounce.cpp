@@ -108,27 +108,25 @@ std::vector<LampField> diffuse_fields(const LightSites& sites, std::vector<Illum
 LampField specular_field(const LightLab& lab, Illumination& lamp, const LightWall& wall,
                          size_t index) {
   static const std::vector<Vec2> disc = even_disc(64);
-  return lamp.over_places(
-      [&](const Vec3& point) {
-        double sum = 0.0;
-        for (const auto& triangle : wall.triangles) {
-          const Vec3 m = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
-          const double height = m.dot(point - triangle[0]);
-          const double lamp_height = m.dot(lamp.lamp_body_m() - triangle[0]);
-          if (height * lamp_height <= 0.0) continue;
-          const Vec3 image = point - 2.0 * height * m;
-          const Vec3 normal = lab.normal_body() - 2.0 * m.dot(lab.normal_body()) * m;
-          const LampAtAttitude& at = lamp.lamp();
-          double through = 0.0;
-          for (const Vec2& d : disc) {
-            const Vec3 to = lamp.lamp_body_m() + d.x() * at.side + d.y() * at.up;
-            if (crosses(triangle, image, to)) through += 1.0 / static_cast<double>(disc.size());
-          }
-          if (through > 0.0) sum += through * lamp.on(image, normal, index);
-        }
-        return sum;
-      },
-      [](size_t) -> const double* { return nullptr; });
+  const auto mirrored = [&](const Vec3& point) {
+    double sum = 0.0;
+    for (const auto& triangle : wall.triangles) {
+      const Vec3 m = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
+      const double height = m.dot(point - triangle[0]);
+      const double lamp_height = m.dot(lamp.lamp_body_m() - triangle[0]);
+      if (height * lamp_height <= 0.0) continue;
+      const Vec3 image = point - 2.0 * height * m;
+      const Vec3 normal = lab.normal_body() - 2.0 * m.dot(lab.normal_body()) * m;
+      double through = 0.0;
+      for (const Vec2& d : disc) {
+        const Vec3 to = lamp.lamp_body_m() + d.x() * lamp.side_m() + d.y() * lamp.up_m();
+        if (crosses(triangle, image, to)) through += 1.0 / static_cast<double>(disc.size());
+      }
+      if (through > 0.0) sum += through * lamp.on(image, normal, index);
+    }
+    return sum;
+  };
+  return lamp.over_places(mirrored, [](size_t) -> const double* { return nullptr; });
 }
 
 }  // namespace

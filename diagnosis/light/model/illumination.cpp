@@ -8,17 +8,6 @@
 
 namespace photorque {
 
-LampAtAttitude::LampAtAttitude(const RigidTransform& lab_from_lamp, const Quat& lab_from_body,
-                               double radius_m)
-    : body_from_lamp{(lab_from_body.conjugate() * lab_from_lamp.rotation).normalized(),
-                     lab_from_body.conjugate() * lab_from_lamp.translation_m} {
-  const Mat3 rotation = body_from_lamp.rotation.toRotationMatrix();
-  lamp_from_body = rotation.transpose();
-  offset_m = -(lamp_from_body * body_from_lamp.translation_m);
-  side = radius_m * rotation.col(0);
-  up = radius_m * rotation.col(1);
-}
-
 Illumination::Illumination(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
                            const LampGeometry& geometry)
     : lab_(lab),
@@ -29,32 +18,35 @@ Illumination::Illumination(const LightLab& lab, const LampSet& lamps, const Ligh
 
 void Illumination::move_to(size_t attitude) {
   const Quat q = biased_attitude(sites_.lab_from_body[attitude], geometry_.attitude_bias_rad);
-  at_.emplace(pose_, q, std::isfinite(light_.radius_m()) ? light_.radius_m() : 0.0);
+  const Mat3 rotation = (q.conjugate() * pose_.rotation).normalized().toRotationMatrix();
+  const double radius_m = std::isfinite(light_.radius_m()) ? light_.radius_m() : 0.0;
+  lamp_body_m_ = q.conjugate() * pose_.translation_m;
+  lamp_from_body_ = rotation.transpose();
+  offset_m_ = -(lamp_from_body_ * lamp_body_m_);
+  side_m_ = radius_m * rotation.col(0);
+  up_m_ = radius_m * rotation.col(1);
   obstacles_.emplace(lab_, geometry_.boxes, q);
 }
 
 bool Illumination::meets_boxes(size_t output) const {
   const LightSites::Group& group = sites_.groups[sites_.outputs[output].group];
   for (size_t i = group.first_point; i < group.first_point + group.count; ++i) {
-    if (obstacles_->meets_boxes(sites_.points_body_m[i], lamp_body_m(), at_->side.norm())) {
-      return true;
-    }
+    if (obstacles_->meets_boxes(sites_.points_body_m[i], lamp_body_m_, side_m_.norm())) return true;
   }
   return false;
 }
 
 double Illumination::on(const Vec3& point, const Vec3& normal, size_t skipped) const {
-  const Vec3 p = at_->lamp_from_body * point + at_->offset_m, n = at_->lamp_from_body * normal;
+  const Vec3 p = lamp_from_body_ * point + offset_m_, n = lamp_from_body_ * normal;
   const double E = light_.irradiance_W_m2(p, n);
   if (!(E > 0.0)) return 0.0;
   if (!obstacles_->any()) return E;
-  const Obstacles::Open open =
-      obstacles_->visible(point, at_->body_from_lamp.translation_m, at_->side, at_->up, skipped);
+  const Obstacles::Open open = obstacles_->visible(point, lamp_body_m_, side_m_, up_m_, skipped);
   if (open.moment.isZero()) return open.fraction * E;
   // The irradiance varies over the aperture. To first order a visible part contributes like the
   // whole aperture shifted to its position.
   constexpr double aside = 0.5;
-  const double step_m = aside * at_->side.norm();
+  const double step_m = aside * side_m_.norm();
   double E_open = open.fraction * E;
   for (int k = 0; k < 2; ++k) {
     const Vec3 step = step_m * Vec3::Unit(k);
@@ -63,16 +55,6 @@ double Illumination::on(const Vec3& point, const Vec3& normal, size_t skipped) c
   }
   return std::max(0.0, E_open);
 }
-
-namespace {
-
-bool differs_in_boxes(const LampGeometry& a, const LampGeometry& b) {
-  LampGeometry same = a;
-  same.boxes = b.boxes;
-  return same == b;
-}
-
-}  // namespace
 
 LampGeometry geometry_of(const LightState& state, size_t lamp, bool enters_cells) {
   return {lamp,
@@ -88,8 +70,10 @@ LampField lamp_field(const LightLab& lab, const LampSet& lamps, const LightSites
                      const LampGeometry& geometry, const std::optional<KnownField>& known) {
   Illumination lamp(lab, lamps, sites, geometry);
   std::optional<Illumination> before;
-  if (known && differs_in_boxes(geometry, *known->geometry)) {
-    before.emplace(lab, lamps, sites, *known->geometry);
+  if (known) {
+    LampGeometry same = geometry;
+    same.boxes = known->geometry->boxes;
+    if (same == *known->geometry) before.emplace(lab, lamps, sites, *known->geometry);
   }
   size_t attitude = std::numeric_limits<size_t>::max();
   const auto unchanged = [&](size_t output) -> const double* {
@@ -108,16 +92,15 @@ LampField lamp_field(const LightLab& lab, const LampSet& lamps, const LightSites
     }
   }
   const double wavelength_m = lamps.beams[geometry.lamp].spectrum.centre_m;
-  return lamp.over_places(
-      [&](const Vec3& point) {
-        double E = lamp.on(point, lab.normal_body(), no_wall);
-        if (front && E > 0.0) {
-          const Vec3 to = (lamp.lamp_body_m() - point).normalized();
-          E *= front->modifier(std::clamp(to.dot(lab.normal_body()), 0.0, 1.0), wavelength_m);
-        }
-        return E;
-      },
-      unchanged);
+  const auto on = [&](const Vec3& point) {
+    double E = lamp.on(point, lab.normal_body(), no_wall);
+    if (front && E > 0.0) {
+      const Vec3 to = (lamp.lamp_body_m() - point).normalized();
+      E *= front->modifier(std::clamp(to.dot(lab.normal_body()), 0.0, 1.0), wavelength_m);
+    }
+    return E;
+  };
+  return lamp.over_places(on, unchanged);
 }
 
 }  // namespace photorque

@@ -12,10 +12,58 @@
 #include <vector>
 
 #include "diagnosis/light/model/lab.h"
-#include "diagnosis/light/model/lamp_table.h"
-#include "diagnosis/light/model/obstacles.h"
 
 namespace photorque {
+
+// obstacles.cpp: obstacles between the lamps and the receiver.
+
+// Evenly distributed points on a disc of radius 1, in a spiral of golden angles. Source: H. Vogel,
+// Mathematical Biosciences 44, 179 (1979).
+std::vector<Vec2> even_disc(size_t count);
+
+// Whether the straight line between two points crosses a triangle; its ends are excluded.
+bool crosses(const std::array<Vec3, 3>& triangle, const Vec3& from, const Vec3& to);
+
+// Obstacles at one attitude.
+class Obstacles {
+ public:
+  // Keeps references to lab and boxes.
+  Obstacles(const LightLab& lab, const std::vector<ShadowBox>& boxes, const Quat& lab_from_body);
+
+  bool any() const { return !boxes_.empty() || !lab_.walls().empty(); }
+
+  // Whether a box may hide a part of an aperture of this radius from a point.
+  bool meets_boxes(const Vec3& point, const Vec3& lamp, double radius_m) const;
+
+  // The visible part of a lamp's aperture from a point: its fraction, and the first moment over the
+  // whole aperture. The moment is the mean position relative to the centre, in radii along `side`
+  // and `up`, where hidden parts count as 0.
+  struct Open {
+    double fraction = 1.0;
+    Vec2 moment = Vec2::Zero();
+  };
+  // All vectors are in the body frame; `side` and `up` span the disc and have its radius.
+  // `skipped`: index of a wall to ignore; past the end: none. A single flat wall or box is exact
+  // and varies smoothly. Otherwise 100 points of the aperture are tested.
+  Open visible(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up,
+               size_t skipped) const;
+
+ private:
+  struct BodyBox {
+    std::array<Vec3, 8> corners;  // body frame
+    Vec3 centre;
+    double radius;
+  };
+  Open sampled(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up) const;
+
+  const LightLab& lab_;
+  const std::vector<ShadowBox>& boxes_;
+  Quat lab_from_body_;
+  std::vector<BodyBox> in_body_;
+  mutable std::vector<size_t> near_walls_, near_boxes_;
+};
+
+// illumination.cpp: light of the lamps.
 
 // Places on the receiver and their times. An output is one point of a scan, or the weighted mean
 // over the points of a cell.
@@ -52,25 +100,15 @@ LampGeometry geometry_of(const LightState& state, size_t lamp, bool enters_cells
 // Irradiance [W/m²] of one lamp at full power on every output.
 using LampField = std::vector<double>;
 
-// A known field for a geometry that may differ in the boxes. It is reused for all outputs that are
-// affected by no box of either geometry.
+// The field of the same lamp with another geometry.
 struct KnownField {
   const LampGeometry* geometry;
   const LampField* field;
 };
-// The field of one lamp; `known` saves the computation of unaffected outputs.
+// The field of one lamp. If only the boxes of `known` differ, its outputs are reused where neither
+// its boxes nor the new ones hide a part of the lamp.
 LampField lamp_field(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
-                     const LampGeometry& geometry, const std::optional<KnownField>& known = {});
-
-// A lamp at one attitude, in body axes.
-struct LampAtAttitude {
-  RigidTransform body_from_lamp;
-  Mat3 lamp_from_body;
-  Vec3 offset_m;
-  Vec3 side, up;  // radii of the disc
-
-  LampAtAttitude(const RigidTransform& lab_from_lamp, const Quat& lab_from_body, double radius_m);
-};
+                     const LampGeometry& geometry, const std::optional<KnownField>& known);
 
 constexpr size_t no_wall = std::numeric_limits<size_t>::max();
 
@@ -85,8 +123,10 @@ class Illumination {
   // The irradiance at a point of the body on a surface with this normal, with all obstacles except
   // one wall.
   double on(const Vec3& point, const Vec3& normal, size_t skipped) const;
-  const Vec3& lamp_body_m() const { return at_->body_from_lamp.translation_m; }
-  const LampAtAttitude& lamp() const { return *at_; }
+  const Vec3& lamp_body_m() const { return lamp_body_m_; }
+  // Two radii of the lamp's disc that span it, in body axes.
+  const Vec3& side_m() const { return side_m_; }
+  const Vec3& up_m() const { return up_m_; }
 
   // Whether a box may hide a part of the lamp from any point of an output at the present attitude.
   bool meets_boxes(size_t output) const;
@@ -117,9 +157,13 @@ class Illumination {
   const LampGeometry& geometry_;
   const LampTable& light_;
   RigidTransform pose_;
-  std::optional<LampAtAttitude> at_;
+  // The lamp at the present attitude.
+  Mat3 lamp_from_body_;
+  Vec3 lamp_body_m_, offset_m_, side_m_, up_m_;
   std::optional<Obstacles> obstacles_;
 };
+
+// bounce.cpp: light after one reflection at a wall.
 
 // A small part of a wall with its normal on the side of the receiver.
 struct WallPatch {

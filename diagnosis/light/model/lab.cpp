@@ -7,7 +7,6 @@
 #include "core/errors.h"
 #include "core/numerics/quadrature.h"
 #include "core/settings/typed_keys.h"
-#include "diagnosis/light/model/lamp_table.h"
 #include "photovoltaics/cell/response.h"
 #include "scenes/effects/stated.h"
 
@@ -32,26 +31,6 @@ constexpr NumberKey tracker_step(
 constexpr TableKey of_array("array", "meters of the voltage and the current of the array");
 }  // namespace noise_key
 
-InputLocation place_of(const Experiment& experiment) {
-  return {experiment.file.path.string()};
-}
-
-std::shared_ptr<LampSet> lamp_set(const Experiment& experiment, double scale) {
-  auto set = std::make_shared<LampSet>();
-  set->beams = beams_with_divergence(experiment, scale);
-  std::map<const Emitter*, std::shared_ptr<const DiscLight>> known;
-  for (const Beam& beam : set->beams) {
-    if (!beam.aperture) {
-      throw InputError(place_of(experiment), "source", "\"" + beam.name + "\"",
-                       "lamps with a round aperture and a rotationally symmetric beam");
-    }
-    auto& light = known[beam.emitter.get()];
-    if (!light) light = std::make_shared<const DiscLight>(*beam.emitter, *beam.aperture);
-    set->lights.push_back(light);
-  }
-  return set;
-}
-
 }  // namespace
 
 std::vector<Key> light_sensor_keys() {
@@ -68,7 +47,18 @@ LightLab::LightLab(const Experiment& experiment)
 
 std::shared_ptr<const LampSet> LightLab::lamps_with(double divergence) const {
   if (divergence == 1.0 && lamps_) return lamps_;
-  auto set = lamp_set(experiment_, divergence);
+  auto set = std::make_shared<LampSet>();
+  set->beams = beams_with_divergence(experiment_, divergence);
+  std::map<const Emitter*, std::shared_ptr<const DiscLight>> known;
+  for (const Beam& beam : set->beams) {
+    if (!beam.aperture) {
+      throw InputError({experiment_.file.path.string()}, "source", "\"" + beam.name + "\"",
+                       "lamps with a round aperture and a rotationally symmetric beam");
+    }
+    auto& light = known[beam.emitter.get()];
+    if (!light) light = std::make_shared<const DiscLight>(*beam.emitter, *beam.aperture);
+    set->lights.push_back(light);
+  }
   tabulate(*set);
   return set;
 }
@@ -84,23 +74,22 @@ void LightLab::tabulate(LampSet& set) const {
   for (const LightWall& wall : walls()) {
     reach_m = std::max(reach_m, wall.centre_m.norm() + wall.radius_m);
   }
-  struct Heights {
+  struct Tabulated {
     double low_m = 1e300, high_m = 0.0;
+    std::shared_ptr<const LampTable> table = {};
   };
-  std::map<const DiscLight*, Heights> heights;
+  std::map<const DiscLight*, Tabulated> heights;
   for (size_t l = 0; l < set.beams.size(); ++l) {
     const double away_m = set.beams[l].lab_from_emitter.translation_m.norm();
-    Heights& h = heights[set.lights[l].get()];
+    Tabulated& h = heights[set.lights[l].get()];
     h.low_m =
         std::min(h.low_m, std::max(3.0 * set.lights[l]->radius_m(), 0.8 * (away_m - reach_m)));
     h.high_m = std::max(h.high_m, 1.1 * (away_m + reach_m));
   }
-  std::map<const DiscLight*, std::shared_ptr<const LampTable>> known;
   for (const auto& light : set.lights) {
-    auto& table = known[light.get()];
-    const Heights& h = heights[light.get()];
-    if (!table) table = std::make_shared<const LampTable>(light, h.low_m, h.high_m);
-    set.tables.push_back(table);
+    Tabulated& h = heights[light.get()];
+    if (!h.table) h.table = std::make_shared<const LampTable>(light, h.low_m, h.high_m);
+    set.tables.push_back(h.table);
   }
 }
 
@@ -153,13 +142,7 @@ void LightLab::place_array() {
 }
 
 void LightLab::place_cells() {
-  ArrayLight map;
-  map.width = grid().width;
-  map.height = grid().height;
-  map.u_low = grid().u_low;
-  map.u_high = grid().u_high;
-  map.v_low = grid().v_low;
-  map.v_high = grid().v_high;
+  const SurfaceGrid& map = grid();
   if (design().places) {
     const double du = (map.u_high - map.u_low) / map.width,
                  dv = (map.v_high - map.v_low) / map.height;

@@ -1,4 +1,4 @@
-#include "diagnosis/light/model/lamp_table.h"
+#include "diagnosis/light/model/lab.h"
 
 #include <Eigen/LU>
 #include <algorithm>

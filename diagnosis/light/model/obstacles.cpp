@@ -1,4 +1,4 @@
-#include "diagnosis/light/model/obstacles.h"
+#include "diagnosis/light/model/illumination.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include "core/errors.h"
 #include "core/numerics/median.h"
 #include "core/numerics/random.h"
-#include "core/numerics/steady_intervals.h"
+#include "core/numerics/series.h"
 #include "core/settings/settings.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
@@ -47,13 +47,8 @@ class LightHeader {
   LightHeader(std::string_view line, const std::map<std::string, std::string>& columns)
       : separator_(separator_of(line)) {
     for (std::string_view cell : cells_of(line, separator_)) {
-      if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
-        cell = cell.substr(1, cell.size() - 2);
-      }
       written_.emplace_back(cell);
-      for (const auto& [name, written] : columns) {
-        if (written == cell) cell = name;
-      }
+      cell = name_of_column(cell, columns);
       // Names used by some instruments.
       if (cell == "V") cell = "voltage_V";
       if (cell == "I") cell = "current_A";
@@ -133,125 +128,86 @@ bool next_line(TextLines& lines, std::string_view& line) {
   return false;
 }
 
-// The beginning of a file: a header of this reader, or of curves in instrument formats.
+// The beginning of a file: a header of this reader, or the cells of one of curves in an instrument
+// format.
 struct Beginning {
   std::optional<LightHeader> header;
-  bool is_curve = false;
   std::vector<std::string> cells;    // header cells as written
   std::vector<std::string> missing;  // without a header: columns that the nearest line lacks
-};
 
-// Whether a header of foreign names becomes that of a curve by the names that are mapped. The
-// reader of curves knows foreign names of its irradiance and temperature, but no attitude.
-bool is_foreign_curve(std::string_view line, const std::map<std::string, std::string>& columns) {
-  const bool has_attitude = std::ranges::any_of(columns, [](const auto& column) {
-    return column.first.starts_with("tilt") || column.first.starts_with("heading") ||
-           column.first.starts_with("q_");
-  });
-  return LightHeader(line, columns).kind() == LightRecording::Kind::sweep && !has_attitude &&
-         !LightHeader(line, {}).kind() && is_curve_header(line, columns);
-}
+  bool is_curve() const { return !header && !cells.empty(); }
+};
 
 // Preambles may lack comment marks: the header is the first line that identifies a kind of
 // recording.
 Beginning find_header(TextLines& lines, const std::map<std::string, std::string>& columns) {
   constexpr int most = 200;
+  const bool has_attitude = std::ranges::any_of(columns, [](const auto& column) {
+    return column.first.starts_with("tilt") || column.first.starts_with("heading") ||
+           column.first.starts_with("q_");
+  });
   std::string_view line;
   Beginning unknown;
   for (int i = 0; i < most && next_line(lines, line); ++i) {
-    LightHeader header(line, columns);
-    if (is_foreign_curve(line, columns)) return {{}, true, curve_header_cells(line), {}};
-    // Only the reader of curves knows the conditions in the comments of instruments.
-    const bool is_curve = header.kind() == LightRecording::Kind::sweep &&
-                          header.separator() != ',' && is_curve_header(line, columns);
-    if (header.kind() && !is_curve) return {header, false, header.written(), {}};
-    if (is_curve_header(line, columns)) return {{}, true, curve_header_cells(line), {}};
+    const LightHeader header(line, columns);
+    const auto kind = header.kind();
+    // Only the reader of curves knows the conditions in the comments of instruments and foreign
+    // names of irradiance and temperature, but it knows no attitude.
+    const bool may_be_curve =
+        !kind || (*kind == LightRecording::Kind::sweep &&
+                  (header.separator() != ',' || (!has_attitude && !LightHeader(line, {}).kind())));
+    if (may_be_curve && is_curve_header(line, columns)) return {{}, curve_header_cells(line), {}};
+    if (kind) return {header, header.written(), {}};
     if (unknown.missing.empty()) unknown.missing = header.missing();
   }
   return unknown;
 }
 
-struct ColumnsOfLight {
-  std::optional<LightColumn> u, v, irradiance, voltage, current, time, q[4], tilt, heading,
-      temperature, sweep, lamps;
-};
-
-ColumnsOfLight columns_of(const LightHeader& header, LightRecording::Kind kind) {
-  const bool run = kind == LightRecording::Kind::run;
-  ColumnsOfLight c;
-  c.u = header.find("u_m");
-  c.v = header.find("v_m");
-  c.irradiance = header.find("irradiance_W_m2");
-  c.voltage = header.find(run ? "array_voltage_V" : "voltage_V");
-  c.current = header.find(run ? "array_current_A" : "current_A");
-  c.time = header.find("t_s");
-  const char* const names[] = {"q_w", "q_x", "q_y", "q_z"};
-  for (size_t k = 0; k < 4; ++k) c.q[k] = header.find(names[k]);
-  c.tilt = header.find("tilt_deg");
-  c.heading = header.find("heading_deg");
-  c.temperature = header.find("cell_temperature_K");
-  c.sweep = header.find("sweep");
-  if (run) c.lamps = header.find("led_current_A");
-  return c;
-}
-
-// Rejects an incomplete or misnamed attitude, which would silently be replaced by that of the
-// experiment.
-void require_whole_attitude(const LightHeader& header, const ColumnsOfLight& columns,
-                            const std::filesystem::path& path) {
-  if (columns.q[0] && columns.q[1] && columns.q[2] && columns.q[3]) return;
-  if (columns.tilt && columns.heading) return;
-  for (const std::string& name : header.names()) {
-    const bool is_attitude =
-        name.starts_with("tilt") || name.starts_with("heading") || name.starts_with("q_");
-    if (!is_attitude) continue;
-    throw InputError({path.string()}, "header", "the column " + name + " alone of an attitude",
-                     "tilt_deg and heading_deg, or q_w, q_x, q_y and q_z");
-  }
-}
-
 // Reads one row; each function returns the reason for a rejection, or an empty string.
 class RowReader {
  public:
-  RowReader(const ColumnsOfLight& columns, char separator, const DefaultConditions& usual,
-            LightRecording& into)
-      : columns_(columns), separator_(separator), usual_(usual), into_(into) {}
+  RowReader(const LightHeader& header, const DefaultConditions& usual, LightRecording& into)
+      : header_(header), usual_(usual), into_(into) {}
+
+  bool has_lamps() const { return lamps_.has_value(); }
+  bool has_temperature() const { return temperature_.has_value(); }
+  bool has_curve_numbers() const { return sweep_.has_value(); }
+  bool has_quaternion() const { return q_w_ && q_x_ && q_y_ && q_z_; }
+  bool has_angles() const { return tilt_ && heading_; }
 
   std::string add(const std::vector<std::string_view>& cells) {
     cells_ = &cells;
-    if (into_.kind != LightRecording::Kind::run && !is_new()) return "repeated row";
+    if (!is_run_ && !is_new()) return "repeated row";
     const auto attitude = attitude_of_row();
     if (!attitude) return "unreadable attitude";
-    const double temperature_K =
-        columns_.temperature ? value(columns_.temperature) : usual_.temperature_K;
+    const double temperature_K = temperature_ ? value(temperature_) : usual_.temperature_K;
     if (into_.kind != LightRecording::Kind::scan && !(temperature_K > 0.0)) {
       return "unreadable temperature";
     }
     if (into_.kind == LightRecording::Kind::scan) {
-      const double u = value(columns_.u), v = value(columns_.v), E = value(columns_.irradiance);
-      if (!std::isfinite(u) || !std::isfinite(v) || !std::isfinite(E)) return "unreadable number";
-      into_.u_m.push_back(u);
-      into_.v_m.push_back(v);
+      const double u_m = value(u_), v_m = value(v_), E = value(irradiance_);
+      if (!std::isfinite(u_m + v_m + E)) return "unreadable number";
+      into_.u_m.push_back(u_m);
+      into_.v_m.push_back(v_m);
       into_.irradiance_W_m2.push_back(E);
     } else {
-      const double V = value(columns_.voltage), I = value(columns_.current);
+      const double V = value(voltage_), I = value(current_);
       if (!std::isfinite(V) || !std::isfinite(I)) return "unreadable number";
-      double time_s = 0.0;
-      if (into_.kind == LightRecording::Kind::run) {
-        time_s = value(columns_.time);
+      if (is_run_) {
+        const double time_s = value(time_);
         if (!std::isfinite(time_s)) return "row without time";
         if (!into_.time_s.empty() && time_s == into_.time_s.back()) return "repeated time";
         into_.time_s.push_back(time_s);
         // An empty cell keeps the previous value.
-        const double lamps = value(columns_.lamps);
+        const double lamp_A = value(lamps_);
         const double before = into_.lamp_light.empty() ? 1.0 : into_.lamp_light.back();
-        into_.lamp_light.push_back(std::isfinite(lamps) ? std::max(0.0, lamps) : before);
+        into_.lamp_light.push_back(std::isfinite(lamp_A) ? std::max(0.0, lamp_A) : before);
       } else {
-        const double sweep = columns_.sweep ? value(columns_.sweep) : 0.0;
+        const double number = sweep_ ? value(sweep_) : 0.0;
         constexpr double most = 1e9;  // fits an int, and exceeds any measurement
-        if (!(std::abs(sweep) <= most)) return "unreadable number";
-        into_.sweep.push_back(static_cast<int>(sweep));
-        if (columns_.irradiance) into_.irradiance_W_m2.push_back(value(columns_.irradiance));
+        if (!(std::abs(number) <= most)) return "unreadable number";
+        into_.sweep.push_back(static_cast<int>(number));
+        if (irradiance_) into_.irradiance_W_m2.push_back(value(irradiance_));
       }
       into_.voltage_V.push_back(V);
       into_.current_A.push_back(I);
@@ -271,33 +227,57 @@ class RowReader {
     return seen_.insert(hash).second;
   }
 
-  double value(const std::optional<LightColumn>& column) const {
+  using Column = std::optional<LightColumn>;
+
+  double value(const Column& column) const {
     if (!column || column->place >= cells_->size()) return absent;
-    const auto number = number_of_cell((*cells_)[column->place], separator_);
+    const auto number = number_of_cell((*cells_)[column->place], header_.separator());
     return number ? *number * column->to_SI : absent;
   }
 
   std::optional<Quat> attitude_of_row() const {
-    if (columns_.q[0] && columns_.q[1] && columns_.q[2] && columns_.q[3]) {
-      const Quat q(value(columns_.q[0]), value(columns_.q[1]), value(columns_.q[2]),
-                   value(columns_.q[3]));
+    if (has_quaternion()) {
+      const Quat q(value(q_w_), value(q_x_), value(q_y_), value(q_z_));
       constexpr double off = 0.01;  // relative deviation from norm 1
       if (!(std::abs(q.norm() - 1.0) < off)) return std::nullopt;
       return q.normalized();
     }
-    if (!columns_.tilt || !columns_.heading) return usual_.lab_from_body;
-    const double tilt = value(columns_.tilt), heading = value(columns_.heading);
-    if (!std::isfinite(tilt) || !std::isfinite(heading)) return std::nullopt;
-    return lab_from_body_at(tilt, heading).rotation;
+    if (!has_angles()) return usual_.lab_from_body;
+    const double tilt_rad = value(tilt_), heading_rad = value(heading_);
+    if (!std::isfinite(tilt_rad) || !std::isfinite(heading_rad)) return std::nullopt;
+    return lab_from_body_at(tilt_rad, heading_rad).rotation;
   }
 
-  const ColumnsOfLight& columns_;
-  char separator_;
+  const LightHeader& header_;
   const DefaultConditions& usual_;
   LightRecording& into_;
+  const bool is_run_ = into_.kind == LightRecording::Kind::run;
+  const Column u_ = header_.find("u_m"), v_ = header_.find("v_m"),
+               irradiance_ = header_.find("irradiance_W_m2"),
+               voltage_ = header_.find(is_run_ ? "array_voltage_V" : "voltage_V"),
+               current_ = header_.find(is_run_ ? "array_current_A" : "current_A"),
+               time_ = header_.find("t_s"), q_w_ = header_.find("q_w"), q_x_ = header_.find("q_x"),
+               q_y_ = header_.find("q_y"), q_z_ = header_.find("q_z"),
+               tilt_ = header_.find("tilt_deg"), heading_ = header_.find("heading_deg"),
+               temperature_ = header_.find("cell_temperature_K"), sweep_ = header_.find("sweep"),
+               lamps_ = is_run_ ? header_.find("led_current_A") : std::nullopt;
   const std::vector<std::string_view>* cells_ = nullptr;
   std::unordered_set<uint64_t> seen_;
 };
+
+// Rejects an incomplete or misnamed attitude, which would silently be replaced by that of the
+// experiment.
+void require_whole_attitude(const LightHeader& header, const RowReader& reader,
+                            const std::filesystem::path& path) {
+  if (reader.has_quaternion() || reader.has_angles()) return;
+  for (const std::string& name : header.names()) {
+    const bool is_attitude =
+        name.starts_with("tilt") || name.starts_with("heading") || name.starts_with("q_");
+    if (!is_attitude) continue;
+    throw InputError({path.string()}, "header", "the column " + name + " alone of an attitude",
+                     "tilt_deg and heading_deg, or q_w, q_x, q_y and q_z");
+  }
+}
 
 // Replaces steady segments of the lamp current by their means: its noise does not affect the light.
 void smooth_steady(std::vector<double>& lamps) {
@@ -354,10 +334,8 @@ LightRecording curves_of_instrument(const std::filesystem::path& path,
     const MeasuredCurve& curve = curves[k];
     const size_t rows = curve.sweep.voltage_V.size();
     const auto append = [rows](auto& to, const auto& value) { to.insert(to.end(), rows, value); };
-    all.voltage_V.insert(all.voltage_V.end(), curve.sweep.voltage_V.begin(),
-                         curve.sweep.voltage_V.end());
-    all.current_A.insert(all.current_A.end(), curve.sweep.current_A.begin(),
-                         curve.sweep.current_A.end());
+    std::ranges::copy(curve.sweep.voltage_V, std::back_inserter(all.voltage_V));
+    std::ranges::copy(curve.sweep.current_A, std::back_inserter(all.current_A));
     append(all.sweep, static_cast<int>(k));
     append(all.lab_from_body, usual.lab_from_body);
     append(all.temperature_K, curve.temperature_K.value_or(usual.temperature_K));
@@ -473,7 +451,7 @@ std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& p
   try {
     TextLines lines(path, options.header);
     const Beginning beginning = find_header(lines, options.columns);
-    if (beginning.is_curve) return LightRecording::Kind::sweep;
+    if (beginning.is_curve()) return LightRecording::Kind::sweep;
     return beginning.header ? beginning.header->kind() : std::nullopt;
   } catch (const InputError&) {
     return std::nullopt;
@@ -505,7 +483,7 @@ LightRecording read_light_recording(const std::filesystem::path& path,
                                     const RecordingOptions& options) {
   TextLines lines(path, options.header);
   const Beginning beginning = find_header(lines, options.columns);
-  if (beginning.is_curve) {
+  if (beginning.is_curve()) {
     LightRecording curves = curves_of_instrument(path, usual, options);
     curves.absent_columns = absent_of(options.columns, beginning.cells);
     return with_clean_curves(std::move(curves));
@@ -523,12 +501,11 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   LightRecording recording;
   recording.kind = *header->kind();
   recording.name = path.string();
-  const ColumnsOfLight columns = columns_of(*header, recording.kind);
+  RowReader reader(*header, usual, recording);
   recording.absent_columns = absent_of(options.columns, beginning.cells);
-  require_whole_attitude(*header, columns, path);
-  recording.has_temperatures = columns.temperature.has_value();
-  recording.has_attitudes = columns.q[0].has_value() || (columns.tilt && columns.heading);
-  RowReader reader(columns, header->separator(), usual, recording);
+  require_whole_attitude(*header, reader, path);
+  recording.has_temperatures = reader.has_temperature();
+  recording.has_attitudes = reader.has_quaternion() || reader.has_angles();
   std::string_view line;
   std::vector<std::string_view> cells;
   const std::string wrong_length = "wrong number of cells";
@@ -548,22 +525,19 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   // A few incomplete rows are omitted. If most rows are incomplete, the file has another fault,
   // such as decimal commas.
   if (2 * of_wrong_length > recording.rows_read) {
-    throw InputError(
-        {path.string(), first_of_wrong_length}, "",
-        "a row of " + std::to_string(cells_there) + " cells",
-        std::to_string(header->columns()) + ", as in the header; numbers have a point, no comma");
+    throw wrong_row({path.string(), first_of_wrong_length}, cells_there, header->columns());
   }
   if (recording.rows() == 0) {
     throw InputError({path.string(), static_cast<int>(lines.number())}, "rows", "no usable row",
                      "at least one row of numbers");
   }
-  if (columns.lamps && !(std::ranges::max(recording.lamp_light) > 0.0)) {
+  if (reader.has_lamps() && !(std::ranges::max(recording.lamp_light) > 0.0)) {
     throw InputError({path.string()}, "led_current_A", "no current in any row",
                      "a lamp current above 0, or no such column");
   }
   make_relative(recording.lamp_light);
   if (recording.kind == LightRecording::Kind::sweep) {
-    if (!columns.sweep) number_curves(recording);
+    if (!reader.has_curve_numbers()) number_curves(recording);
     return with_clean_curves(std::move(recording));
   }
   return recording;

@@ -23,11 +23,7 @@ struct ModuleActing {
   double warmer_K = 0.0;
 };
 
-struct ModuleDesign {
-  int cells = 1;
-  int bypass_every = 0;  // 0: no bypass diodes
-  double bypass_drop_V = 0.5;
-  int chains = 1;  // parallel chains under each bypass diode
+struct ModuleDesign : ModuleWiring {
   std::vector<std::filesystem::path> reference_files;
   std::vector<LightRecording> references;  // one per curve
   std::vector<std::string> notes;          // on the references, for the user

@@ -8,7 +8,6 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "diagnosis/light/module/explain.h"
-#include "diagnosis/light/module/report.h"
 
 namespace photorque {
 namespace {
@@ -74,13 +73,6 @@ void require_current_forward(const LightRecording& recording) {
       "positive currents of an illuminated module: the sign of the column is reversed");
 }
 
-// Throws InputError for a scan or a run.
-void require_curve(const LightRecording& recording) {
-  if (recording.kind == LightRecording::Kind::sweep) return;
-  throw InputError({recording.name}, "header", "no columns voltage_V,current_A",
-                   "a current-voltage curve, for an experiment with [module]");
-}
-
 ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const ModuleNominal& nominal,
                  DataQuality& quality) {
   constexpr size_t max_points = 160;  // longer curves are thinned
@@ -105,16 +97,6 @@ ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const Modu
   return run;
 }
 
-// Data of a single curve.
-ModuleData of_one_curve(const ModuleRun& whole) {
-  ModuleData data;
-  auto [train, held] = split_curve(whole);
-  data.train.push_back(std::move(train));
-  data.held.push_back(std::move(held));
-  data.whole.push_back(whole);
-  return data;
-}
-
 // Diagnoses every curve separately. The nominal model is fitted first. If it leaves a residual, all
 // hypotheses are fitted. `light` returns the light of each curve relative to the reference, as
 // fitted with the nominal model.
@@ -124,7 +106,8 @@ std::vector<Diagnosis> each_curve(const ModuleDesign& design, const ModuleNomina
   const std::vector<ModuleHypothesis> hypotheses = module_hypotheses(design, nominal);
   std::vector<Diagnosis> each;
   for (const ModuleRun& curve : all.whole) {
-    const ModuleData data = of_one_curve(curve);
+    auto [train, held] = split_curve(curve);
+    const ModuleData data{{std::move(train)}, {std::move(held)}, {curve}};
     const ModuleAnswer answer = explain_module(design, nominal, hypotheses, data, threads, limits);
     light.push_back(std::exp(answer.trials.front().fit.at[0]));
     each.push_back(described(design, nominal, answer, data, limits));
@@ -149,7 +132,10 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   std::vector<std::string> warnings = design.notes;
   const auto read = [&](const std::vector<LightRecording>& files, std::vector<ModuleRun>& runs) {
     for (const LightRecording& file : files) {
-      require_curve(file);
+      if (file.kind != LightRecording::Kind::sweep) {
+        throw InputError({file.name}, "header", "no columns voltage_V,current_A",
+                         "a current-voltage curve, for an experiment with [module]");
+      }
       for (const LightRecording& curve : sweeps_of(file)) {
         runs.push_back(run_of(curve, design, nominal, quality));
         data.whole.push_back(runs.back());

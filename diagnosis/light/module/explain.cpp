@@ -7,7 +7,7 @@
 
 #include "core/numerics/order.h"
 #include "core/parallel.h"
-#include "inference/held_out.h"
+#include "inference/estimator/evidence.h"
 #include "inference/whiteness.h"
 
 namespace photorque {

@@ -13,25 +13,6 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr Index of_curve = 2, of_module = ModuleNominal::numbers, of_cell = 5;
 
-struct Acting {
-  ModuleState state;
-  ModuleCell cell;
-};
-
-Acting acting(const ModuleDesign& design, const ModuleNominal& nominal, const ModuleHypothesis& h,
-              const ModuleSweep& sweep, const VectorXd& x) {
-  Acting a;
-  const ModuleActing stated = acting_on(design, sweep.name);
-  a.state = stated.state;
-  a.cell = moved(nominal, x.segment<of_module>(of_curve));
-  a.state.light = std::exp(x[0]);
-  a.state.temperature_K = sweep.temperature_K + stated.warmer_K + design.temperature_sigma_K * x[1];
-  const Index first = of_curve + of_module;
-  h.act({x.data() + first, static_cast<size_t>(x.size() - first)}, a.state, a.cell);
-  a.state.temperature_K = std::clamp(a.state.temperature_K, 100.0, 800.0);
-  return a;
-}
-
 // Every third point of each curve that has many points.
 std::vector<ModuleRun> thinned(std::vector<ModuleRun> runs) {
   constexpr size_t every = 3, fewest = 20;
@@ -61,14 +42,27 @@ double ModuleTrial::prior_excess_sigma() const {
   return (prior_chi2() - numbers) / std::sqrt(2.0 * numbers);
 }
 
+std::vector<ArrayCurve::SlopedPoint> ModuleFitter::curve(const ModuleHypothesis& h,
+                                                         const VectorXd& x,
+                                                         const ModuleRun& at) const {
+  const ModuleActing stated = acting_on(design_, at.sweep.name);
+  ModuleState state = stated.state;
+  ModuleCell cell = moved(nominal_, x.segment<of_module>(of_curve));
+  state.light = std::exp(x[0]);
+  state.temperature_K =
+      at.sweep.temperature_K + stated.warmer_K + design_.temperature_sigma_K * x[1];
+  const Index first = of_curve + of_module;
+  h.act({x.data() + first, static_cast<size_t>(x.size() - first)}, state, cell);
+  return module_points(design_, cell, state, at.sweep.voltage_V);
+}
+
 VectorXd ModuleFitter::residuals(const ModuleHypothesis& h, const VectorXd& x,
                                  const ModuleRun& run) const {
-  const Acting a = acting(design_, nominal_, h, run.sweep, x);
-  const auto curve = module_points(wiring_of(design_), a.cell, a.state, run.sweep.voltage_V);
-  VectorXd r(static_cast<Index>(curve.size()));
-  for (size_t i = 0; i < curve.size(); ++i) {
-    const double sigma_A = std::hypot(run.sigma_A, curve[i].slope_S * nominal_.voltage_noise_V);
-    r[static_cast<Index>(i)] = (run.sweep.current_A[i] - curve[i].current_A) / sigma_A;
+  const auto points = curve(h, x, run);
+  VectorXd r(static_cast<Index>(points.size()));
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double sigma_A = std::hypot(run.sigma_A, points[i].slope_S * nominal_.voltage_noise_V);
+    r[static_cast<Index>(i)] = (run.sweep.current_A[i] - points[i].current_A) / sigma_A;
   }
   return r;
 }
@@ -186,13 +180,6 @@ VectorXd ModuleFitter::numbers_of(const ModuleTrial& trial, size_t run) {
   VectorXd x(of_curve + trial.shared.size());
   x << trial.fit.at.segment(of_curve * static_cast<Index>(run), of_curve), trial.shared;
   return x;
-}
-
-std::vector<ArrayCurve::SlopedPoint> ModuleFitter::curve(const ModuleHypothesis& h,
-                                                         const ModuleTrial& trial, size_t run,
-                                                         const ModuleRun& at) const {
-  const Acting a = acting(design_, nominal_, h, at.sweep, numbers_of(trial, run));
-  return module_points(wiring_of(design_), a.cell, a.state, at.sweep.voltage_V);
 }
 
 }  // namespace photorque

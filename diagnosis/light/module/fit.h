@@ -88,7 +88,9 @@ class ModuleFitter {
   // Currents of a fit at the voltages of `at`, a part of run number `run`, with the fitted light
   // and temperature of that run.
   std::vector<ArrayCurve::SlopedPoint> curve(const ModuleHypothesis& h, const ModuleTrial& trial,
-                                             size_t run, const ModuleRun& at) const;
+                                             size_t run, const ModuleRun& at) const {
+    return curve(h, numbers_of(trial, run), at);
+  }
   // Residuals (measured − predicted)/error of the points of a run at parameters x.
   Eigen::VectorXd residuals(const ModuleHypothesis& h, const Eigen::VectorXd& x,
                             const ModuleRun& run) const;
@@ -96,6 +98,9 @@ class ModuleFitter {
   static Eigen::VectorXd numbers_of(const ModuleTrial& trial, size_t run);
 
  private:
+  // Currents at parameters x.
+  std::vector<ArrayCurve::SlopedPoint> curve(const ModuleHypothesis& h, const Eigen::VectorXd& x,
+                                             const ModuleRun& at) const;
   // Initial log light of the run in a fit.
   double first_light(const ModuleHypothesis& h, const ModuleRun& run,
                      const inference::Parameters& parameters) const;

@@ -113,33 +113,20 @@ ReferenceFit fit_references(const ModuleDesign& design, double noise, const Refe
   }
   const double scale_A = result.sweeps.front().current_A.front();
   const inference::Parameters parameters = reference_parameters(design, result.sweeps);
-  const ModuleWiring wiring = wiring_of(design);
   const auto residuals = [&](const VectorXd& x, Index run) -> VectorXd {
     const ModuleSweep& sweep = result.sweeps[static_cast<size_t>(run)];
     ModuleState state;
     state.light = std::exp(x[0]);
     state.temperature_K = sweep.temperature_K + x[1];
     const ModuleCell cell = cell_of(x.tail(ModuleNominal::numbers), design.reference_temperature_K);
-    const auto curve = module_curve(wiring, cell, state).at_voltages(sweep.voltage_V);
+    const auto curve = module_curve(design, cell, state).at_voltages(sweep.voltage_V);
     VectorXd r(static_cast<Index>(curve.size()));
     for (size_t i = 0; i < curve.size(); ++i) {
       r[static_cast<Index>(i)] = (sweep.current_A[i] - curve[i].current_A) / (noise * scale_A);
     }
     return r;
   };
-  const inference::ResidualModel model(
-      parameters, [&](const VectorXd& x, Index run, VectorXd& r, MatrixXd* slopes) {
-        r = residuals(x, run);
-        if (slopes == nullptr) return;
-        slopes->resize(r.size(), x.size());
-        for (Index k = 0; k < x.size(); ++k) {
-          constexpr double step = 1e-5;
-          VectorXd high_x = x, low_x = x;
-          high_x[k] += step;
-          low_x[k] -= step;
-          slopes->col(k) = (residuals(low_x, run) - residuals(high_x, run)) / (2.0 * step);
-        }
-      });
+  const inference::ResidualModel model(parameters, inference::with_differences(residuals));
   inference::Options options;
   options.max_iterations = 60;
   result.fit = inference::fit(model, near != nullptr ? near->fit.at : model.start(), options);
@@ -256,6 +243,19 @@ ModuleNominal nominal_of_references(const ModuleDesign& design) {
   return nominal;
 }
 
+// Residual of one diode and its translation.
+double misfit_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
+  // Residual of the translation per unit of distance, relative to the short-circuit current, for
+  // the two modules from which the sizes of its powers come.
+  constexpr double translation_misfit = 1.5e-3;
+  // Correction for one or two references: with few correlation lengths they determine their misfit
+  // only to a third.
+  constexpr double of_curves = 1.33;
+  const double distance = distance_of(nominal, sweep.light, sweep.temperature_K);
+  return std::hypot(of_curves * nominal.misfit, translation_misfit * distance) *
+         nominal.cell.photocurrent_A * sweep.light;
+}
+
 }  // namespace
 
 ModuleSweep ModuleSweep::selected(const std::function<bool(size_t point)>& keeps) const {
@@ -314,10 +314,6 @@ ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& de
   return good.selected([every](size_t i) { return i % every == 0; });
 }
 
-ModuleWiring wiring_of(const ModuleDesign& design) {
-  return {design.cells, design.bypass_every, design.bypass_drop_V, design.chains};
-}
-
 ModuleCell moved(const ModuleNominal& nominal, const ModuleNominal::Numbers& z) {
   const ModuleNominal::Numbers by = nominal.root * z;
   ModuleCell cell = nominal.cell;
@@ -336,23 +332,6 @@ double distance_of(const ModuleNominal& nominal, double light, double temperatur
 ModuleNominal nominal_module(const ModuleDesign& design) {
   return design.datasheet.empty() ? nominal_of_references(design) : nominal_of_datasheet(design);
 }
-
-namespace {
-
-// Residual of one diode and its translation.
-double misfit_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
-  // Residual of the translation per unit of distance, relative to the short-circuit current, for
-  // the two modules from which the sizes of its powers come.
-  constexpr double translation_misfit = 1.5e-3;
-  // Correction for one or two references: with few correlation lengths they determine their misfit
-  // only to a third.
-  constexpr double of_curves = 1.33;
-  const double distance = distance_of(nominal, sweep.light, sweep.temperature_K);
-  return std::hypot(of_curves * nominal.misfit, translation_misfit * distance) *
-         nominal.cell.photocurrent_A * sweep.light;
-}
-
-}  // namespace
 
 double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
   const double step_V = (sweep.voltage_V.back() - sweep.voltage_V.front()) /

@@ -44,8 +44,6 @@ struct ModuleNominal {
   double voltage_noise_V = 0.0;
 };
 
-// The wiring of the module of a design.
-ModuleWiring wiring_of(const ModuleDesign& design);
 // The cell with its parameters shifted by root · z.
 ModuleCell moved(const ModuleNominal& nominal, const ModuleNominal::Numbers& z);
 

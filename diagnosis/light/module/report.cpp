@@ -1,4 +1,4 @@
-#include "diagnosis/light/module/report.h"
+#include "diagnosis/light/module/explain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -191,60 +191,15 @@ constexpr double even_misfit = 7e-3;
 // Limit of the misfit of a reference against which a recording counts as unchanged.
 constexpr double unusable_misfit = 2e-2;
 
-// Whether a curve is both a reference and a recording. Its deviation from one diode would then
-// count as noise, so that no effect would be found.
-bool is_its_own_reference(const ModuleDesign& design,
-                          const std::vector<LightRecording>& recordings) {
-  return std::ranges::any_of(recordings, [&](const LightRecording& r) {
-    return std::ranges::any_of(design.references, [&](const LightRecording& reference) {
-      return r.voltage_V == reference.voltage_V && r.current_A == reference.current_A;
-    });
-  });
-}
-
-// The mean weighted by the numbers of samples.
-double weighted_mean(double a, int64_t samples_a, double b, int64_t samples_b) {
-  const auto m = static_cast<double>(samples_a), n = static_cast<double>(samples_b);
-  return (m * a + n * b) / (m + n);
-}
-
-// Adds to the root mean square, weighted by the numbers of samples.
-void add_rms(const Holdout& more, Holdout& all) {
-  const auto mean = [&](double a, double b) {
-    return weighted_mean(a, all.samples, b, more.samples);
-  };
+// Adds held-out data of another curve.
+void add_curve(const Holdout& more, Holdout& all) {
   for (const auto member : {&Holdout::rms_before, &Holdout::rms_after}) {
     double& rms = (all.*member)["current_A"];
-    rms = std::sqrt(mean(rms * rms, std::pow((more.*member).at("current_A"), 2)));
+    rms = std::sqrt(weighted_mean(rms * rms, all.samples,
+                                  std::pow((more.*member).at("current_A"), 2), more.samples));
   }
-  all.chi2_per_sample_before = mean(all.chi2_per_sample_before, more.chi2_per_sample_before);
-  all.chi2_per_sample_after = mean(all.chi2_per_sample_after, more.chi2_per_sample_after);
-  const bool is_worse =
-      more.predictive && (!all.predictive || more.predictive->sigma > all.predictive->sigma);
-  if (is_worse) all.predictive = more.predictive;
-  all.samples += more.samples;
+  add_held_out(more, all);
 }
-
-}  // namespace
-
-std::string module_sentence(const Diagnosis& d) {
-  if (d.verdict == Verdict::consistent) {
-    return "Nothing is missing: the differences are noise or deviations from the single-diode "
-           "model.";
-  }
-  if (d.verdict == Verdict::unexplained) {
-    return "Not explained: no effect of the catalogue explains the recording (" + d.because + ").";
-  }
-  std::string names;
-  for (const FoundEffect& effect : d.effects) {
-    std::string name = effect.kind;
-    std::ranges::replace(name, '_', ' ');
-    names += (names.empty() ? "" : "; ") + name + " (" + effect.explanation + ")";
-  }
-  return "Missing: " + names + ".";
-}
-
-namespace {
 
 // All fitted hypotheses, the most likely first.
 std::vector<Alternative> alternatives_of(const ModuleAnswer& answer) {
@@ -262,9 +217,7 @@ std::vector<Alternative> alternatives_of(const ModuleAnswer& answer) {
     a.chosen = i == answer.decision.chosen;
     all.push_back(std::move(a));
   }
-  std::ranges::stable_sort(all, [](const Alternative& a, const Alternative& b) {
-    return a.log_evidence_relative > b.log_evidence_relative;
-  });
+  std::ranges::stable_sort(all, std::greater(), &Alternative::log_evidence_relative);
   return all;
 }
 
@@ -283,6 +236,21 @@ Holdout holdout_of(const ModuleFitter& fitter, const ModuleAnswer& answer, const
 }
 
 }  // namespace
+
+std::string module_sentence(const Diagnosis& d) {
+  if (d.verdict == Verdict::consistent) {
+    return "Nothing is missing: the differences are noise or deviations from the single-diode "
+           "model.";
+  }
+  if (d.verdict == Verdict::unexplained) {
+    return "Not explained: no effect of the catalogue explains the recording (" + d.because + ").";
+  }
+  std::string names;
+  for (const FoundEffect& effect : d.effects) {
+    names += (names.empty() ? "" : "; ") + in_words(effect.kind) + " (" + effect.explanation + ")";
+  }
+  return "Missing: " + names + ".";
+}
 
 Diagnosis described(const ModuleDesign& design, const ModuleNominal& nominal,
                     const ModuleAnswer& answer, const ModuleData& data, const Thresholds& limits) {
@@ -339,7 +307,7 @@ Diagnosis of_all_curves(std::vector<Diagnosis> each) {
     all.chi2_per_sample_after =
         weighted_mean(all.chi2_per_sample_after, all.samples, d.chi2_per_sample_after, d.samples);
     all.samples += d.samples;
-    add_rms(*d.holdout, *all.holdout);
+    add_curve(*d.holdout, *all.holdout);
     all.confidence = std::min(all.confidence, d.confidence);
     if (d.verdict == Verdict::consistent) continue;
     ++differing;
@@ -434,7 +402,13 @@ void compare_with_sensor(const ModuleDesign& design, const std::vector<ModuleRun
 
 void judge_references(const ModuleDesign& design, const ModuleNominal& nominal,
                       const std::vector<LightRecording>& recordings, Diagnosis& d) {
-  const bool own = is_its_own_reference(design, recordings);
+  // If a curve is both a reference and a recording, its deviation from one diode counts as noise,
+  // so that no effect is found.
+  const bool own = std::ranges::any_of(recordings, [&](const LightRecording& r) {
+    return std::ranges::any_of(design.references, [&](const LightRecording& reference) {
+      return r.voltage_V == reference.voltage_V && r.current_A == reference.current_A;
+    });
+  });
   const bool uneven = !design.references.empty() && nominal.misfit > even_misfit;
   if (uneven) {
     d.warnings.push_back(printed(

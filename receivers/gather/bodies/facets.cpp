@@ -24,14 +24,11 @@ Facet facet_of(const SurfaceFace& face) {
 // Ball about the centre of the box that contains the facets.
 Ball ball_about(std::span<const Facet> facets) {
   if (facets.empty()) return {Vec3::Zero(), 0.0};
-  Vec3 low = facets[0].corner_m[0], high = low;
+  Eigen::AlignedBox3d box;
   for (const Facet& facet : facets) {
-    for (const Vec3& corner : facet.corner_m) {
-      low = low.cwiseMin(corner);
-      high = high.cwiseMax(corner);
-    }
+    for (const Vec3& corner : facet.corner_m) box.extend(corner);
   }
-  return {0.5 * (low + high), 0.5 * (high - low).norm()};
+  return {box.center(), 0.5 * box.diagonal().norm()};
 }
 
 }  // namespace
@@ -96,22 +93,12 @@ void Facets::find_free(double scene_radius_m) {
   }
 }
 
-namespace {
-
-// Indices of the corners of all faces, three per face; corners at the same position have the same
-// index.
-std::vector<uint32_t> places_of(std::span<const SurfaceFace> faces) {
+std::optional<bool> fronts_look_inwards(std::span<const SurfaceFace> faces) {
   std::vector<Vec3> corners_m;
   for (const SurfaceFace& face : faces) {
     corners_m.insert(corners_m.end(), face.corner_body_m.begin(), face.corner_body_m.end());
   }
-  return welded(corners_m);
-}
-
-}  // namespace
-
-std::optional<bool> fronts_look_inwards(std::span<const SurfaceFace> faces) {
-  const std::vector<uint32_t> places = places_of(faces);
+  const std::vector<uint32_t> places = welded(corners_m);  // three per face
   if (!edges_pair_up(places)) return std::nullopt;
   DisjointSets bodies(places.size());
   for (size_t f = 0; f < places.size(); f += 3) {

@@ -1,7 +1,6 @@
 // Light of one beam on the facets of a body. For the files of this folder only.
 #pragma once
 
-#include <cmath>
 #include <memory>
 #include <mutex>
 #include <optional>

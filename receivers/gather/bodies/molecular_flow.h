@@ -11,6 +11,9 @@
 // and Wind Determination from Satellite Dynamics (2012), eq. 3.56 to 3.60.
 #pragma once
 
+#include <cmath>
+
+#include "core/constants.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -25,15 +28,31 @@ struct GasWall {
 class MolecularFlux {
  public:
   // `travel` and `normal` are of unit length; the speed ratio is positive.
-  MolecularFlux(double speed_ratio, const Vec3& travel, const Vec3& normal);
+  MolecularFlux(double speed_ratio, const Vec3& travel, const Vec3& normal)
+      : speed_ratio_(speed_ratio),
+        travel_(travel),
+        normal_(normal),
+        cosine_(-normal.dot(travel)),
+        z_(std::erfc(-cosine_ * speed_ratio)),
+        p_(std::exp(-std::pow(cosine_ * speed_ratio, 2)) / speed_ratio) {}
 
   // The momentum that arriving molecules bring: f without the term in r. Its direction is the mean
   // of theirs.
-  Vec3 arriving() const;
+  Vec3 arriving() const {
+    const double pressure = z_ / (2.0 * speed_ratio_ * speed_ratio_);
+    return (cosine_ * z_ + p_ / std::sqrt(pi)) * travel_ - pressure * normal_;
+  }
   // f.
-  Vec3 force(const GasWall& wall) const;
+  Vec3 force(const GasWall& wall) const {
+    const double at_wall = 2.0 * wall.temperature_ratio / (speed_ratio_ * speed_ratio_);
+    const double leaving = std::sqrt(0.5 * (1.0 + wall.accommodation * (at_wall - 1.0)));
+    return arriving() - 0.5 * leaving * (std::sqrt(pi) * cosine_ * z_ + p_) * normal_;
+  }
   // No molecule arrives: of a side that is turned away from a fast flow.
-  bool is_none() const;
+  bool is_none() const {
+    constexpr double negligible = 1e-12;  // against the flux on a side that faces the flow
+    return cosine_ < 0.0 && p_ < negligible;
+  }
 
  private:
   double speed_ratio_;

@@ -38,10 +38,7 @@ OnwardLight::OnwardLight(const TraceableScene& scene,
     : scene_(scene.data()),
       facet_of_(facet_of),
       about_m_(about_m),
-      buffer_(std::make_unique<HitBuffer>()) {
-  buffer_->hits.bands = scene_.scene.bands.count();
-  for (size_t k = 0; k < 3; ++k) buffer_->hits.direction[k] = buffer_->ray[3 + k].data();
-}
+      buffer_(std::make_unique<HitBuffer>(scene_.scene.bands.count())) {}
 
 void OnwardLight::follow(std::vector<OnwardRay>& rays, double cutoff, const OnwardSink& sink) {
   // The cutoff ends all light earlier, except between perfect mirrors.

@@ -15,14 +15,10 @@ using EdgeKey = std::array<double, 7>;
 
 EdgeKey key_of(uint32_t instance, const Vec3& a, const Vec3& b) {
   const bool turned = std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3);
-  const Vec3 &first = turned ? b : a, &second = turned ? a : b;
-  return {static_cast<double>(instance),
-          first.x(),
-          first.y(),
-          first.z(),
-          second.x(),
-          second.y(),
-          second.z()};
+  EdgeKey key{static_cast<double>(instance)};
+  std::copy_n((turned ? b : a).data(), 3, &key[1]);
+  std::copy_n((turned ? a : b).data(), 3, &key[4]);
+  return key;
 }
 
 // Lines at which other facets cut through a facet.
@@ -99,34 +95,23 @@ Outlines::Outlines(const Facets& facets) {
   }
 }
 
-std::vector<Line> Outlines::in_light(const Vec3& travel) const {
-  std::vector<Line> lines;
-  for (const Edge& edge : edges_) {
-    if (edge.bounds_shadows(travel)) lines.push_back(edge.line);
-  }
-  return lines;
-}
-
-std::vector<Line> Outlines::in_sight(const Vec3& travel) const {
+std::vector<Line> Outlines::in_light(const Vec3& travel, bool creases) const {
   constexpr double smooth = 0.95;  // cosine between neighbours, 18 deg
   std::vector<Line> lines;
   for (const Edge& edge : edges_) {
-    const bool is_crease = edge.normal[0].dot(edge.normal[1]) < smooth;
-    if (is_crease || edge.bounds_shadows(travel)) lines.push_back(edge.line);
+    const bool is_crease = creases && edge.normal[0].dot(edge.normal[1]) < smooth;
+    if (is_crease || edge.facets != 2 ||
+        edge.normal[0].dot(travel) * edge.normal[1].dot(travel) <= 0.0) {
+      lines.push_back(edge.line);
+    }
   }
   return lines;
 }
 
-std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m) {
-  std::vector<std::vector<Line>> cuts;
+BodyShape::BodyShape(const TraceableScene& scene) : facets(scene.scene()), outlines(facets) {
+  const double rounding_m = plane_rounding * scene_diameter_m(scene);
   for (const Facet& facet : facets.all()) cuts.push_back(cuts_through(facet, facets, rounding_m));
-  return cuts;
 }
-
-BodyShape::BodyShape(const TraceableScene& scene)
-    : facets(scene.scene()),
-      outlines(facets),
-      cuts(all_cuts(facets, plane_rounding * scene_diameter_m(scene))) {}
 
 LineGrid::LineGrid(const TraceableScene& scene, const Outlines& outlines, const Vec3& travel)
     : lines_(outlines.in_light(travel)),

@@ -12,26 +12,19 @@ class Outlines {
  public:
   explicit Outlines(const Facets& facets);
 
-  // Edges at which the surface ends or turns away from the light; only these bound shadows.
-  std::vector<Line> in_light(const Vec3& travel) const;
-  // Lines where the view against `travel` changes: visible outlines and creases.
-  std::vector<Line> in_sight(const Vec3& travel) const;
+  // Edges at which the surface ends or turns away from light along `travel`; only these bound
+  // shadows. With `creases`, also sharp edges: together the lines where the view against `travel`
+  // changes.
+  std::vector<Line> in_light(const Vec3& travel, bool creases = false) const;
 
  private:
   struct Edge {
     Line line;
     Vec3 normal[2];
     int facets = 0;
-
-    bool bounds_shadows(const Vec3& travel) const {
-      return facets != 2 || normal[0].dot(travel) * normal[1].dot(travel) <= 0.0;
-    }
   };
   std::vector<Edge> edges_;
 };
-
-// Lines at which other facets cut through each facet.
-std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m);
 
 // The facets of a scene, and the lines that bound shadows on them.
 struct BodyShape {
@@ -39,7 +32,7 @@ struct BodyShape {
 
   Facets facets;
   Outlines outlines;
-  std::vector<std::vector<Line>> cuts;  // by facet: all_cuts()
+  std::vector<std::vector<Line>> cuts;  // by facet: the lines at which others cut through it
 };
 
 // A grid of lines, projected along the light's direction `travel`, for fast search of the lines

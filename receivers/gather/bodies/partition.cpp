@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics/divide_convex.h"
+
 namespace photorque {
 namespace {
 
@@ -42,17 +44,10 @@ class Polygon {
       return along.x() * (p.y() - from.y()) - along.y() * (p.x() - from.x());
     };
     std::array<Polygon, 2> halves;
-    for (size_t i = 0; i < count_; ++i) {
-      const Vec2 &here = corner_[i], &next = corner_[(i + 1) % count_];
-      const double at = side_of(here), then = side_of(next);
-      if (at >= 0.0) halves[0].add(here);
-      if (at <= 0.0) halves[1].add(here);
-      if (at * then < 0.0) {
-        const Vec2 cut = here + at / (at - then) * (next - here);
-        halves[0].add(cut);
-        halves[1].add(cut);
-      }
-    }
+    divide_convex(std::span(corner_).first(count_), side_of, [&](const Vec2& p, double side) {
+      if (side >= 0.0) halves[0].add(p);
+      if (side <= 0.0) halves[1].add(p);
+    });
     return halves;
   }
   // Area as a fraction of the cell.

@@ -79,9 +79,8 @@ ScatteredLight::ScatteredLight(const TraceableScene& scene, const BodyShape& sha
                                const Vec3& about_m, const Effort& effort)
     : patch_m2_(shape.facets.area_m2() / static_cast<double>(effort.patches)),
       close_m_(0.03 * std::sqrt(patch_m2_)) {
-  const bool opaque = std::ranges::none_of(scene.scene().surfaces, [](const OpticalSurface& one) {
-    return std::ranges::any_of(one.transmitted, [](double share) { return share > 0.0; });
-  });
+  const bool opaque =
+      std::ranges::none_of(scene.scene().surfaces, any_positive, &OpticalSurface::transmitted);
   for (const Facet& facet : shape.facets.all()) {
     for (const bool front : {false, true}) {
       const FacetSide one{&facet, front};

@@ -89,7 +89,8 @@ class SunlitBody::Direction {
     const Scene& scene = body_.scene_.scene();
     const OpticalSurface& surface = scene.surface(scene.instances[facet.instance], side.front);
     const bool free = side.is_free();
-    const bool throws = any(surface.transmitted) || (!free && any(surface.specular));
+    const bool throws =
+        any_positive(surface.transmitted) || (!free && any_positive(surface.specular));
     const size_t number = 2 * body_.shape_.facets.number_of(facet);
     sides_.push_back({side, number + (side.front ? 1 : 0), travel, light,
                       FirstContact(surface, side.front, lamp_.fraction(), static_cast<int>(bands_)),
@@ -97,16 +98,11 @@ class SunlitBody::Direction {
     cut(facet, free, exposure == Exposure::whole, grid);
   }
 
-  bool any(const BandValues& share) const {
-    return std::any_of(share.begin(), share.begin() + static_cast<std::ptrdiff_t>(bands_),
-                       [](double one) { return one > 0.0; });
-  }
-
   // The outlines that are visible along a direction. The last result is kept, because consecutive
   // facets often have the same plane and therefore the same direction.
   std::span<const Line> seen_along(const Vec3& direction) {
     if (!(direction - seen_direction_).isZero(1e-12)) {
-      seen_ = body_.shape_.outlines.in_sight(direction);
+      seen_ = body_.shape_.outlines.in_light(direction, true);
       for (const auto& cuts : body_.shape_.cuts)
         seen_.insert(seen_.end(), cuts.begin(), cuts.end());
       seen_direction_ = direction;
@@ -147,8 +143,9 @@ class SunlitBody::Direction {
     const uint32_t cells = lit.throws ? mirror_level(facet) : 0;
     if (cells > 0) {  // a small facet is represented by one point
       const Vec3 mirrored = lit.travel - 2.0 * normal.dot(lit.travel) * normal;
-      if (!free && any(lit.surface->specular)) add(seen_along(mirrored), normal, -mirrored);
-      if (any(lit.surface->transmitted)) {
+      if (!free && any_positive(lit.surface->specular))
+        add(seen_along(mirrored), normal, -mirrored);
+      if (any_positive(lit.surface->transmitted)) {
         add(cuts, -normal, -lit.travel);
         add(grid.lines(), -normal, -lit.travel);
       }

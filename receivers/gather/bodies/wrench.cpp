@@ -237,15 +237,6 @@ void find_sides(const Facets& facets, const BodyLamp& lamp, bool plain, const Ve
   }
 }
 
-// Distributes the rays in proportion to the weights of the sides.
-void distribute_rays(Item& item, double points_per_weight, const Vec3& about_m) {
-  constexpr double most = 1 << 14;
-  for (SampledSide& sampled : item.sampled) {
-    const double wanted = points_per_weight * weight_of(sampled, about_m);
-    sampled.points = std::bit_ceil(static_cast<uint32_t>(std::clamp(wanted, 1.0, most)));
-  }
-}
-
 Gathered sum_of(std::vector<Item>& items, const WrenchReceiver& receiver, int replicates) {
   Gathered result;
   const size_t entries = receiver.direct_entries();
@@ -337,7 +328,11 @@ Gathered WrenchGather::wrench(const RigidTransform& lab_from_body, const WrenchR
     const WrenchEntries entries{item.replicates, item.bound};
     for (const FacetSide& side : item.open) add_open(light, side, entries);
     if (item.sampled.empty()) return;
-    distribute_rays(item, points_per_weight, about_m);
+    constexpr double most_points = 1 << 14;
+    for (SampledSide& sampled : item.sampled) {
+      const double wanted = points_per_weight * weight_of(sampled, about_m);
+      sampled.points = std::bit_ceil(static_cast<uint32_t>(std::clamp(wanted, 1.0, most_points)));
+    }
     item.rays = add_sampled(light, item.sampled, options.seed, hash_words(item.lamp, item.instance),
                             entries);
   });

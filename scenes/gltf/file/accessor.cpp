@@ -13,14 +13,20 @@ Number load(const unsigned char* bytes) {
   return value;
 }
 
-uint32_t load_index(const unsigned char* bytes, int component_type) {
+double load_component(const unsigned char* bytes, int component_type, bool normalized) {
   switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return normalized ? std::max(load<int8_t>(bytes) / 127.0, -1.0) : load<int8_t>(bytes);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return load<uint8_t>(bytes);
+      return load<uint8_t>(bytes) / (normalized ? 255.0 : 1.0);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return normalized ? std::max(load<int16_t>(bytes) / 32767.0, -1.0) : load<int16_t>(bytes);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return load<uint16_t>(bytes);
-    default:
+      return load<uint16_t>(bytes) / (normalized ? 65535.0 : 1.0);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
       return load<uint32_t>(bytes);
+    default:
+      return load<float>(bytes);
   }
 }
 
@@ -81,7 +87,8 @@ AccessorReader::AccessorReader(const Document& document, int accessor, MemoryBud
   budget->charge(replaced_count, sizeof(uint32_t), indices_where);
   replaced_.resize(replaced_count);
   for (size_t i = 0; i < replaced_count; ++i) {
-    replaced_[i] = load_index(index_bytes + i * index_size, indices.componentType);
+    replaced_[i] = static_cast<uint32_t>(
+        load_component(index_bytes + i * index_size, indices.componentType, false));
     if (replaced_[i] >= count_ || (i > 0 && replaced_[i] <= replaced_[i - 1])) {
       throw document.wrong(indices_where, std::to_string(replaced_[i]) + " at " + std::to_string(i),
                            "rising indices below " + std::to_string(count_));
@@ -102,26 +109,7 @@ const unsigned char* AccessorReader::address(size_t element) const {
 double AccessorReader::number(size_t element, size_t component) const {
   const unsigned char* const start = address(element);
   if (start == nullptr) return 0.0;
-  const unsigned char* const bytes = start + component * layout_.component_bytes;
-  switch (component_type_) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return normalized_ ? std::max(load<int8_t>(bytes) / 127.0, -1.0) : load<int8_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return load<uint8_t>(bytes) / (normalized_ ? 255.0 : 1.0);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return normalized_ ? std::max(load<int16_t>(bytes) / 32767.0, -1.0) : load<int16_t>(bytes);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return load<uint16_t>(bytes) / (normalized_ ? 65535.0 : 1.0);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return load<uint32_t>(bytes);
-    default:
-      return load<float>(bytes);
-  }
-}
-
-uint32_t AccessorReader::index(size_t element) const {
-  const unsigned char* const start = address(element);
-  return start == nullptr ? 0 : load_index(start, component_type_);
+  return load_component(start + component * layout_.component_bytes, component_type_, normalized_);
 }
 
 }  // namespace photorque::gltf

@@ -37,9 +37,6 @@ class AccessorReader {
     return {number(element, 0), number(element, 1), number(element, 2)};
   }
 
-  // Unsigned integer at `element` of a scalar accessor.
-  uint32_t index(size_t element) const;
-
  private:
   // Address of an element; null for an element that is not stored and therefore zero.
   const unsigned char* address(size_t element) const;

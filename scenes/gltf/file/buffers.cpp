@@ -1,13 +1,8 @@
-#include "scenes/gltf/file/buffers.h"
-
-#include <nlohmann/json.hpp>
-
-#include <array>
 #include <filesystem>
 
 #include "core/provenance.h"
 #include "core/text/parse.h"
-#include "scenes/gltf/file/fault.h"
+#include "scenes/gltf/file/document.h"
 
 namespace photorque::gltf {
 namespace {
@@ -58,8 +53,7 @@ class Loader {
     if (uri == holder.object.end() || !uri->is_string()) {
       throw wrong("uri", "nothing", "a text, or a bufferView");
     }
-    const std::string& text = uri->get_ref<const std::string&>();
-    return text.starts_with("data:") ? data_uri(text, holder.media_types) : external(text);
+    return resource(uri->get_ref<const std::string&>(), holder.media_types);
   }
 
   Buffers load(const nlohmann::json& list) {
@@ -85,10 +79,8 @@ class Loader {
   std::optional<std::string> bytes(const nlohmann::json& buffer, size_t i) {
     const auto uri = buffer.find("uri");
     if (uri != buffer.end()) {
-      const std::string& text = uri->get_ref<const std::string&>();
-      return text.starts_with("data:")
-                 ? data_uri(text, {"application/octet-stream", "application/gltf-buffer"})
-                 : external(text);
+      return resource(uri->get_ref<const std::string&>(),
+                      {"application/octet-stream", "application/gltf-buffer"});
     }
     if (!is_glb_ || i != 0) return std::nullopt;
     if (!binary_) throw wrong("uri", "neither it nor a BIN chunk", "one of them");
@@ -96,9 +88,10 @@ class Loader {
     return std::string(*binary_);
   }
 
-  // Bytes of a data URI (RFC 2397). `types` are the media types allowed by section 3.6.1.1 of the
-  // specification.
-  std::string data_uri(const std::string& uri, const std::array<std::string_view, 2>& types) {
+  // Bytes of a file or of a data URI (RFC 2397). `types` are the media types allowed by section
+  // 3.6.1.1 of the specification.
+  std::string resource(const std::string& uri, const std::array<std::string_view, 2>& types) {
+    if (!uri.starts_with("data:")) return external(uri);
     const size_t comma = uri.find(',');
     if (comma == std::string::npos) throw wrong("uri", excerpt(uri), "a data URI with a comma");
     std::string type = lower_case(std::string_view(uri).substr(5, comma - 5));

@@ -1,18 +1,9 @@
 #include "scenes/gltf/file/document.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "core/errors.h"
 #include "core/little_endian.h"
 #include "core/text/parse.h"
-#include "scenes/gltf/file/compression.h"
-#include "scenes/gltf/file/fault.h"
 
 namespace photorque::gltf {
 
@@ -285,7 +276,8 @@ Document read_document(const std::string& bytes, const std::string& file, const 
   if (document.json.contains("buffers")) {
     for (json& buffer : document.json["buffers"]) buffer.erase("uri");  // may be most of the file
   }
-  decompress(&document, budget);
+  decode_meshopt_views(&document, budget);
+  decode_draco_primitives(&document, budget);
   document.model = typed_model(document);
   return document;
 }
@@ -300,17 +292,45 @@ const json& element_of(const Document& document, const std::string& where, const
   return (*list)[index.get<size_t>()];
 }
 
-std::string bytes_of_view(const Document& document, const std::string& where, const json& index) {
-  const json& view = element_of(document, where, index, "bufferViews");
-  const auto buffer = view.value("buffer", size_t{0});
-  const auto offset = view.value("byteOffset", uint64_t{0});
-  const auto length = view.value("byteLength", uint64_t{0});
-  if (buffer >= document.buffers.size() || !document.buffers[buffer].bytes ||
-      offset > document.buffers[buffer].bytes->size() ||
-      length > document.buffers[buffer].bytes->size() - offset) {
-    throw document.wrong(where, "a view beyond its buffer", "a view inside the buffer");
+std::string_view buffer_bytes(const Document& document, uint64_t buffer, uint64_t offset,
+                              uint64_t length, const std::string& where) {
+  if (buffer >= document.buffers.size() || !document.buffers[buffer].bytes) {
+    throw document.wrong(where, "buffer " + std::to_string(buffer) + " without bytes",
+                         "a buffer that holds the data");
   }
-  return document.buffers[buffer].bytes->substr(offset, length);
+  const std::string_view bytes = *document.buffers[buffer].bytes;
+  if (offset > bytes.size() || length > bytes.size() - offset) {
+    throw document.wrong(where,
+                         std::to_string(length) + " bytes from byte " + std::to_string(offset),
+                         "an end within the " + std::to_string(bytes.size()) + " of the buffer");
+  }
+  return bytes.substr(offset, length);
+}
+
+std::string_view bytes_of_view(const Document& document, const std::string& where,
+                               const json& index) {
+  const json& view = element_of(document, where, index, "bufferViews");
+  return buffer_bytes(document, view.value("buffer", uint64_t{0}),
+                      view.value("byteOffset", uint64_t{0}), view.value("byteLength", uint64_t{0}),
+                      where);
+}
+
+uint64_t extension_number(const Document& document, const json& extension, const char* key,
+                          const std::string& where) {
+  const json* const found = member_of(extension, key);
+  constexpr uint64_t largest = 1ull << 53;
+  if (!found || !found->is_number_unsigned() || found->get<uint64_t>() > largest) {
+    throw document.wrong(where + pointer(key), found ? describe_json(*found) : "nothing",
+                         "a whole number");
+  }
+  return found->get<uint64_t>();
+}
+
+size_t add_buffer(Document* document, std::string bytes) {
+  document->json["buffers"].push_back(json{{"byteLength", bytes.size()}});
+  const uint64_t length = bytes.size();
+  document->buffers.push_back({length, std::move(bytes)});
+  return document->buffers.size() - 1;
 }
 
 }  // namespace photorque::gltf

@@ -3,7 +3,7 @@
 #pragma once
 
 // The only include of tinygltf, configured without image decoding and without access to files:
-// tracing needs no textures, and only buffers.h opens (and records) files of a model. The macros
+// tracing needs no textures, and only buffers.cpp opens (and records) files of a model. The macros
 // change the class, so every source file must include it with the same ones.
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
@@ -12,15 +12,32 @@
 
 #include <tiny_gltf.h>
 
+#include <array>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "scenes/gltf/file/buffers.h"
 #include "scenes/gltf/file/fault.h"
+#include "scenes/gltf/file/open.h"
 
 namespace photorque::gltf {
+
+// `bytes` contains at least byte_length bytes. It is empty if the document does not state the
+// source, which is legal for buffers that are not read (placeholders, fallbacks of compressed
+// data).
+struct Buffer {
+  uint64_t byte_length = 0;
+  std::optional<std::string> bytes;
+};
+
+struct Buffers {
+  std::vector<Buffer> buffers;
+  std::vector<std::pair<std::string, std::string>> inputs;  // external files: name, content hash
+};
 
 struct Document {
   std::string file;       // name in messages
@@ -50,8 +67,49 @@ Document read_document(const std::string& bytes, const std::string& file, const 
 const nlohmann::json& element_of(const Document& document, const std::string& where,
                                  const nlohmann::json& index, const char* section);
 
-// Bytes of the buffer view `index`; errors as in element_of().
-std::string bytes_of_view(const Document& document, const std::string& where,
-                          const nlohmann::json& index);
+// Bytes of a buffer; valid until a buffer is added. Throws InputError if some of them are missing.
+std::string_view buffer_bytes(const Document& document, uint64_t buffer, uint64_t offset,
+                              uint64_t length, const std::string& where);
+// Bytes of the buffer view `index`; errors as in element_of() and buffer_bytes().
+std::string_view bytes_of_view(const Document& document, const std::string& where,
+                               const nlohmann::json& index);
+
+// Loads every buffer of a document that passed check_schema(). `binary` is the BIN chunk of a GLB.
+// Throws InputError for bytes that are missing or fewer than declared, and for URIs that are
+// malformed, of a scheme other than data:, absolute, or leave the folder of the model.
+Buffers load_buffers(const nlohmann::json& document, std::optional<std::string_view> binary,
+                     bool is_glb, const std::string& file, const GltfOpen& open,
+                     MemoryBudget* budget);
+
+// A JSON object with a `uri`.
+struct UriHolder {
+  const nlohmann::json& object;
+  std::string where;                            // JSON pointer, for messages
+  std::array<std::string_view, 2> media_types;  // allowed for embedded data
+};
+
+// Bytes of a URI: embedded data or a file. Throws InputError like load_buffers().
+std::string load_uri(const UriHolder& holder, const std::string& file, const GltfOpen& open,
+                     MemoryBudget* budget);
+
+// Decode EXT_meshopt_compression (buffer views) and KHR_draco_mesh_compression (primitives), so
+// that other parts of the reader need not handle them. The decoded bytes become additional buffers
+// of the document, with their own views and accessors. Call both before the typed model is made,
+// views first, because Draco data may lie in one of them.
+//
+// A primitive with Draco data keeps its plain accessors if they have bytes. Otherwise it gets
+// POSITION, TEXCOORD_0 and indices from the data, and no other attribute. Throw InputError for data
+// that cannot be decoded or that contradict their description in the document; `where` in messages
+// is the extension.
+void decode_meshopt_views(Document* document, MemoryBudget* budget);
+void decode_draco_primitives(Document* document, MemoryBudget* budget);
+
+// An unsigned integer below 2^53 of an extension that check_schema() does not cover. Throws
+// InputError for other values.
+uint64_t extension_number(const Document& document, const nlohmann::json& extension,
+                          const char* key, const std::string& where);
+
+// Adds a buffer to the document; returns its index.
+size_t add_buffer(Document* document, std::string bytes);
 
 }  // namespace photorque::gltf

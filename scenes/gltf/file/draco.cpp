@@ -5,11 +5,10 @@
 #include <cstring>
 #include <map>
 #include <new>
-#include <optional>
 #include <stdexcept>
 #include <tuple>
 
-#include "scenes/gltf/file/compression.h"
+#include "scenes/gltf/file/document.h"
 
 namespace photorque::gltf {
 namespace {
@@ -44,8 +43,7 @@ class Decoder {
   // Replaces the primitive's geometry if it has only Draco data.
   void decode(size_t mesh, size_t index) {
     json& primitive = document_.json["meshes"][mesh]["primitives"][index];
-    const json* const extensions = member_of(primitive, "extensions");
-    const json* const extension = extensions ? member_of(*extensions, extension_name) : nullptr;
+    const json* const extension = extension_of(primitive, extension_name);
     if (!extension) return;
     where_ = pointer("meshes", mesh, "primitives", index, "extensions", extension_name);
     if (has_plain_positions(primitive)) return;
@@ -102,17 +100,10 @@ class Decoder {
     return plain;
   }
 
-  std::unique_ptr<draco::Mesh> decoded_mesh(uint64_t view_index) const {
-    const auto views = document_.json.find("bufferViews");
-    if (views == document_.json.end() || view_index >= views->size()) {
-      throw document_.wrong(where_ + "/bufferView", std::to_string(view_index), "a bufferView");
-    }
-    const json& view = (*views)[view_index];
-    const auto bytes = buffer_bytes(document_, view["buffer"].get<uint64_t>(),
-                                    view.value("byteOffset", uint64_t{0}),
-                                    view["byteLength"].get<uint64_t>(), where_);
+  std::unique_ptr<draco::Mesh> decoded_mesh(uint64_t view) const {
+    const std::string_view bytes = bytes_of_view(document_, where_ + "/bufferView", view);
     draco::DecoderBuffer buffer;
-    buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    buffer.Init(bytes.data(), bytes.size());
     std::string reason;
     try {
       auto mesh = draco::Decoder().DecodeMeshFromBuffer(&buffer);

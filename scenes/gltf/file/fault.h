@@ -64,6 +64,8 @@ void check_schema(const nlohmann::json& document, const std::string& file);
 
 // The member of an object; null if there is none or the value is no object.
 const nlohmann::json* member_of(const nlohmann::json& value, const char* key);
+// An extension of an object; null if there is none.
+const nlohmann::json* extension_of(const nlohmann::json& value, const char* name);
 
 // Short description of a value for messages: "-3", "\"abc\"", "an array of 2".
 std::string describe_json(const nlohmann::json& value);

@@ -2,8 +2,7 @@
 // extensions/2.0/Vendor/EXT_meshopt_compression.
 #include <meshoptimizer.h>
 
-#include "scenes/gltf/file/compression.h"
-#include "scenes/gltf/file/fault.h"
+#include "scenes/gltf/file/document.h"
 
 namespace photorque::gltf {
 namespace {
@@ -15,7 +14,7 @@ constexpr const char* meshopt_extension = "EXT_meshopt_compression";
 struct Packed {
   uint64_t count = 0, stride = 0;
   std::string mode, filter;
-  std::span<const unsigned char> data;
+  std::string_view data;
 };
 
 // Checks conditions that the decoders assume.
@@ -82,7 +81,7 @@ std::string unpacked(const Document& document, const Packed& packed, MemoryBudge
   if (packed.count == 0) throw document.wrong(where + "/count", "0", "at least 1");
   budget->charge(packed.count, packed.stride, where);
   std::string bytes(packed.count * packed.stride, '\0');
-  const unsigned char* const from = packed.data.data();
+  const auto* const from = reinterpret_cast<const unsigned char*>(packed.data.data());
   const size_t size = packed.data.size();
   int failure = 0;
   if (packed.mode == "ATTRIBUTES") {
@@ -112,8 +111,7 @@ void decode_meshopt_views(Document* document, MemoryBudget* budget) {
   const size_t views = document->json["bufferViews"].size();
   for (size_t i = 0; i < views; ++i) {
     json& view = document->json["bufferViews"][i];
-    const json* const extensions = member_of(view, "extensions");
-    const json* const found = extensions ? member_of(*extensions, meshopt_extension) : nullptr;
+    const json* const found = extension_of(view, meshopt_extension);
     if (!found) continue;
     const json extension = *found;
     const std::string where = pointer("bufferViews", i, "extensions", meshopt_extension);

@@ -387,6 +387,11 @@ const json* member_of(const json& value, const char* key) {
   return found == value.end() ? nullptr : &*found;
 }
 
+const json* extension_of(const json& value, const char* name) {
+  const json* const extensions = member_of(value, "extensions");
+  return extensions ? member_of(*extensions, name) : nullptr;
+}
+
 void check_schema(const json& document, const std::string& file) {
   if (!document.is_object()) {
     throw InputError({file}, "", describe_json(document), "a JSON object");

@@ -1,6 +1,5 @@
 // Fuzz target: any bytes as a table of measured scattering.
-#include "scenes/surfaces/brdf_file.h"
-
+#include "scenes/surfaces/settings.h"
 #include "tests/fuzz/target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -18,13 +18,12 @@ struct AddedTorque final : TorqueLaw<AddedTorque> {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {.name = "added_torque",
-          .summary = "a torque about body x in proportion to the charge drawn",
-          .read = read_law<AddedTorque, Stage::torque, growth>,
-          .screening = {.parametrisations = {{"something grows with the charge drawn",
-                                              {EffectKey::number(growth.name, 1e-4)}}},
-                        .needs = Requirement::charge},
-          .keys = {growth}};
+  return kind_of_law<AddedTorque, Stage::torque, growth>(
+      {.name = "added_torque",
+       .summary = "a torque about body x in proportion to the charge drawn",
+       .screening = {.parametrisations = {{"something grows with the charge drawn",
+                                           {EffectKey::number(growth.name, 1e-4)}}},
+                     .needs = Requirement::charge}});
 }
 
 }  // namespace photorque::kinds::added_torque

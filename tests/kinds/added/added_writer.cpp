@@ -6,11 +6,10 @@ namespace photorque::kinds::added_writer {
 
 WriterKind kind() {
   return {"added_writer", "Names of the headline figures",
-          [](const Product& product, const Provenance&, const std::filesystem::path& folder,
-             PictureStyle) -> std::vector<std::filesystem::path> {
+          [](const WriterJob& job) -> std::vector<std::filesystem::path> {
             std::string text;
-            for (const auto& quantity : product.quantities) text += quantity.name + "\n";
-            const std::filesystem::path path = file_in(folder, "names", "added_writer");
+            for (const auto& quantity : job.product.quantities) text += quantity.name + "\n";
+            const std::filesystem::path path = file_in(job.folder, "names", "added_writer");
             write_file_whole(path, text);
             return {path};
           }};

@@ -77,11 +77,10 @@ void add_options(Command& command, Options& options) {
   command.add_recordings(options.recordings);
 }
 
-void run(const Options& options, const Program&) {
-  const Console console = terminal(options);
+RunResult run(const Options& options, const Console& console) {
   const BalanceOutcome outcome = run_balance(options, options.recordings);
   print_balance(console, outcome.run, outcome.balance, outcome.result.product);
-  write_results(options, console, outcome.result);
+  return outcome.result;
 }
 
 }  // namespace
@@ -89,7 +88,7 @@ void run(const Options& options, const Program&) {
 Verb kind() {
   return {"balance",
           "Centre of mass from a recording, and the displacements of the balancing masses",
-          command_with(add_options, run),
+          command_that_writes(add_options, run),
           {"platform", "environment", "disturbance", "sensors", "balance", "recording"},
           "[balance]",
           [](const RunOptions& options) { return run_balance(options, {}).result; }};

@@ -49,8 +49,7 @@ void print_paper(const Console& console, const Product& product) {
   print_air(console, table_named(product, "paper_external_air"));
 }
 
-void run(const CommandOptions& options, const Program&) {
-  const Console console = terminal(options);
+RunResult run(const CommandOptions& options, const Console& console) {
   const BudgetRun found = run_budget(options);
   const Product& product = found.result.product;
   const PlatformState& state = found.budget.state;
@@ -85,16 +84,16 @@ void run(const CommandOptions& options, const Program&) {
                  (air != nullptr ? ", the air drag of each part" : "") +
                  (found.budget.beside_paper ? ", the paper's figures" : ""));
   }
-  write_results(options, console, found.result);
+  return found.result;
 }
 
 }  // namespace
 
 Verb kind() {
   return {"budget",
-          "Every disturbance torque at one state, largest first; for STASIS compared with "
-          "published figures",
-          command_with(experiment_options, run),
+          "Every disturbance torque at one state, largest first; for STASIS also the "
+          "figures of the paper",
+          command_that_writes(experiment_options, run),
           {"platform", "environment", "disturbance", "sensors", "budget"},
           "[platform]",
           [](const RunOptions& options) { return run_budget(options).result; }};

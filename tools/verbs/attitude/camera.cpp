@@ -121,19 +121,18 @@ void print_camera(const Console& console, const CameraRun& run) {
                          " images a second on one core, exposure simulated, read and solved");
 }
 
-void run(const CommandOptions& options, const Program&) {
-  const Console console = terminal(options);
+RunResult run(const CommandOptions& options, const Console& console) {
   const CameraRun run = run_camera(options, console);
   print_camera(console, run);
-  write_results(options, console, run.result);
+  return run.result;
 }
 
 }  // namespace
 
 Verb kind() {
   return {"camera",
-          "Attitude error of a camera that tracks markers, from its geometry",
-          command_with(experiment_options, run),
+          "Attitude error of a camera that tracks markers, computed from board, lens and sensor",
+          command_that_writes(experiment_options, run),
           {"platform", "environment", "disturbance", "sensors", "camera_study"},
           "[sensors.camera] with markers"};
 }

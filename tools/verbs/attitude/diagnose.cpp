@@ -2,6 +2,7 @@
 #include "tools/verbs/attitude/diagnose.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -376,12 +377,13 @@ void add_options(Command& command, Options& options) {
   command.add("--guess", options.guess,
               "Write a first experiment for these recordings (CSV), with its assumptions marked");
   command.add("--columns", options.columns,
-              "With --guess: names of the columns of files without a header: t_s,angle_deg");
+              "With --guess: names of the columns: t_s,angle_deg. For files without a header, or "
+              "with several bodies");
   command
       .add("--rate-Hz,--fps", options.rate_Hz,
            "With --guess: rows or video frames per second of files without a time")
       .range = Option::Between<double>{1e-9, 1e9};
-  command.add("--page", options.page, "Make report.html interactive: scene, maps and curves");
+  command.add("--page", options.page, "Write report.html with interactive scene, maps and curves");
   command.mistake = [&options]() -> std::string {
     if (!options.guess.empty()) options.name = name_of_guess(options.guess);
     if (options.guess.empty() && (!options.columns.empty() || options.rate_Hz)) {
@@ -401,7 +403,7 @@ void print_diagnosis(const Console& console, const Diagnosis& d) {
   for (const FoundEffect& effect : d.effects) {
     const std::string others = joined_text(effect.indistinguishable_from, " or ");
     print("  " + effect.kind + (others.empty() ? "" : " or " + others) + ", probability " +
-          show(effect.probability));
+          show(1e-3 * std::round(1e3 * effect.probability)));
     for (const FittedParameter& p : effect.parameters) {
       std::string text = "    " + p.key + " ";
       for (size_t i = 0; i < p.value.size(); ++i) {

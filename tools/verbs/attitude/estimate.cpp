@@ -229,12 +229,12 @@ void print_method(const Console& console, const EstimateRun::Estimated& one) {
 
 void print_consistency(const Console& console, const ConsistencyResult& result) {
   const RunEnsemble& ensemble = result.ensemble;
-  console.heading(std::to_string(ensemble.runs()) + " simulated runs");
-  console.line("  mean NEES: " + band_text(ensemble.band()) + "; within it " +
+  console.heading(std::to_string(ensemble.runs) + " simulated runs");
+  console.line("  mean NEES: " + band_text(ensemble.band) + "; within it " +
                show_percent(result.part_filtered) + " of the rows filtered, " +
                show_percent(result.part_smoothed) + " smoothed (95 % expected)");
-  print_innovations(console, "attitude", ensemble.attitude());
-  print_innovations(console, "gyro", ensemble.gyro());
+  print_innovations(console, "attitude", ensemble.attitude);
+  print_innovations(console, "gyro", ensemble.gyro);
   console.line("  rms error of the smoother over that of the filter: at most " +
                show(result.worst_gain) + " at any row");
 }
@@ -243,16 +243,15 @@ void add_options(Command& command, Options& options) {
   command.add_experiment(options);
   command.add_recordings(options.recordings);
   command.add("--truth", options.truth,
-              "True motion of the recording for comparison (CSV with q_w ..., such as "
+              "True motion of the recording, for comparison (CSV with q_w …, such as "
               "time_history.csv of propagate)");
 }
 
-void run(const Options& options, const Program&) {
-  const Console console = terminal(options);
+RunResult run(const Options& options, const Console& console) {
   const EstimateRun run = run_estimate(options, console, options.recordings, options.truth);
   for (const EstimateRun::Estimated& one : run.estimated) print_method(console, one);
   if (run.consistency) print_consistency(console, *run.consistency);
-  write_results(options, console, run.result);
+  return run.result;
 }
 
 }  // namespace
@@ -260,7 +259,7 @@ void run(const Options& options, const Program&) {
 Verb kind() {
   return {"estimate",
           "Attitude and rate by Kalman filter and smoother, from recordings or simulated runs",
-          command_with(add_options, run),
+          command_that_writes(add_options, run),
           {"platform", "environment", "disturbance", "sensors", "recording", "estimate"},
           "[platform]"};
 }

@@ -26,7 +26,8 @@ void run(const CommandOptions& options, const Program&) {
 
 Verb kind() {
   return {"propagate",
-          "Motion of the platform: attitude, rates, charge, every torque, a recording",
+          "Motion of the platform under its disturbances: attitude, rates, torques, and a "
+          "simulated recording",
           command_with(add_options, run),
           {"platform", "environment", "disturbance", "sensors", "propagate", "light", "array"},
           "[platform]",

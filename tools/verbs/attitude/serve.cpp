@@ -103,8 +103,8 @@ RunResult serve_experiment(const RunOptions& options, const Console& console) {
 Verb kind() {
   return {
       "serve",
-      "The platform in real time: measurements out, commands in, over UDP",
-      command_that_writes(serve_experiment),
+      "Simulation of the platform in real time: sends measurements and receives commands over UDP",
+      command_that_writes(experiment_options, serve_experiment),
       {"platform", "environment", "disturbance", "sensors", "propagate", "serve", "light", "array"},
       "[platform]"};
 }

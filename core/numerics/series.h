@@ -1,4 +1,4 @@
-// Thinning of long series of numbers for plots.
+// Series of readings: thinning for plots, means of steady intervals.
 #pragma once
 
 #include <algorithm>
@@ -24,6 +24,20 @@ inline std::vector<size_t> lows_and_highs(std::span<const double> values, size_t
     if (low != high) kept.push_back(std::max(low, high));
   }
   return kept;
+}
+
+// Replaces each value by the mean of its steady interval. An interval ends at a value that differs
+// by more than `most` from the mean so far.
+inline void hold_means(std::span<double> values, double most) {
+  for (size_t begin = 0, end = 0; begin < values.size(); begin = end) {
+    double sum = 0.0;
+    for (end = begin; end < values.size(); ++end) {
+      const auto count = static_cast<double>(end - begin);
+      if (end > begin && std::abs(values[end] - sum / count) > most) break;
+      sum += values[end];
+    }
+    for (size_t i = begin; i < end; ++i) values[i] = sum / static_cast<double>(end - begin);
+  }
 }
 
 }  // namespace photorque
